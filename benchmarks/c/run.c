@@ -8,6 +8,7 @@
 #include CASE
 #include "methods.h"
 #include "events.h"
+#define NEARBY 1e-5
 
 typedef struct {
     const double *p, *times;
@@ -56,6 +57,12 @@ static void take(const Run *r, const double *rate, double h, int stiff, Step *s)
         explicit_step(r->p, r->m, r->t, r->x, rate, h, s);
 }
 
+/* `pow` without its last digits, which a step length does not need. */
+static double power(double error, double exponent)
+{
+    return exp(exponent * log(error));
+}
+
 /* A step within the tolerances; 0 where none can be found. */
 static int attempt(Run *r, const double *rate, double limit, Step *s)
 {
@@ -68,11 +75,11 @@ static int attempt(Run *r, const double *rate, double limit, Step *s)
         r->steps++;
         double error = size(r, s->error, s->x, s->x_end);
         if (error <= 1.0) {
-            r->ratio = fmin(6.0, fmax(0.2, 0.9 * pow(fmax(error, 1e-10), -0.2)));
+            r->ratio = fmin(6.0, fmax(0.2, 0.9 * power(fmax(error, 1e-10), -0.2)));
             return 1;
         }
         r->rejected++;
-        r->h = h * (isfinite(error) ? fmax(0.1, 0.9 * pow(error, -0.2)) : 0.1);
+        r->h = h * (isfinite(error) ? fmax(0.1, 0.9 * power(error, -0.2)) : 0.1);
         if (r->h < smallest(r))
             return 0;
     }
@@ -96,7 +103,8 @@ static void sample(Run *r, const Step *s, double until)
         inside(s, (r->times[r->filled] - s->t) / s->h, r->out + N * r->filled);
 }
 
-/* End the step at the crossing: located on the polynomial, then on true steps. */
+/* End the step at the crossing: located on the polynomial, then on true steps, and from the end of
+ * the last one on where a correction is small. */
 static void polish(Run *r, const double *rate, double theta, int mode, int to, int item, Step *s)
 {
     double g[MARGINS], whole = s->h, h = fmax(theta * whole, smallest(r));
@@ -110,7 +118,10 @@ static void polish(Run *r, const double *rate, double theta, int mode, int to, i
             || fabs(change) > 0.1 * whole)
             return;
         h += change;
-        take(r, rate, h, stiff, s);
+        if (!stiff && fabs(change) <= NEARBY * s->h)
+            explicit_move(r->p, r->m, rate, change, s);
+        else
+            take(r, rate, h, stiff, s);
     }
 }
 

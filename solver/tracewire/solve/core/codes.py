@@ -21,7 +21,7 @@ UNSETTLED, TWO_WRITES, BAD_RESET, NO_END, CARRIED, ENDLESS = 15, 16, 17, 18, 19,
 
 # places in Progress.now
 T, H, END, LENGTH, RTOL, FIXED, RATIO, LONGEST, PACED, LAST = range(10)
-NEVER, WHILE_HELD, ALWAYS = 0.0, 1.0, 2.0  # in now[PACED]: when the pace bounds a step
+NEVER, WHILE_HELD, ALWAYS = range(3)  # in now[PACED]: when the pace bounds a step
 # places in Progress.ints
 STEPS, REJECTED, STIFF_STEPS, METHOD, CURRENT, SUSPICIOUS, CALM = range(7)
 SAMPLED, LOGGED, STIFF_ROWS, RECENT, BUDGET, WARNINGS, STAGE, WATCHED = range(7, 15)

@@ -437,7 +437,7 @@ def polish(core: int, theta: float, row: int) -> None:
     t, x, whole = trial.ends[0], progress.x, trial.ends[1]
     method, i = progress.ints[CURRENT], watched.mode[row]
     h = max(theta * whole, smallest_step(core))
-    methods.step(core, method, t, x, trial.rate, h)
+    methods.end_at(core, method, t, x, trial.rate, h)
     if not np.all(np.isfinite(trial.x_end)):
         return
     if watched.kind[row] != GUARD:
@@ -454,12 +454,12 @@ def polish(core: int, theta: float, row: int) -> None:
             return
         if abs(change) <= 1e-14 * progress.now[LENGTH]:
             if change > 0.0 and h + 2 * change <= whole:
-                methods.step(core, method, t, x, trial.rate, h + 2 * change)
+                methods.end_at(core, method, t, x, trial.rate, h + 2 * change)
             return
         if abs(change) > 0.1 * whole:
             return
         h += change
-        methods.step(core, method, t, x, trial.rate, h)
+        methods.end_at(core, method, t, x, trial.rate, h)
 
 
 @unit
@@ -471,7 +471,7 @@ def _polish_end(core: int, h: float, whole: float, row: int) -> None:
     _end(core, t + h, pinned)
     margins(core, t + h, pinned, values)
     here, at, other = values[row], h, h * (1.0 - BACK)
-    methods.step(core, method, t, x, trial.rate, other)
+    methods.end_at(core, method, t, x, trial.rate, other)
     _end(core, t + other, pinned)
     margins(core, t + other, pinned, values)
     there = values[row]
@@ -481,13 +481,13 @@ def _polish_end(core: int, h: float, whole: float, row: int) -> None:
             break
         there, other = here, at
         at += change
-        methods.step(core, method, t, x, trial.rate, at)
+        methods.end_at(core, method, t, x, trial.rate, at)
         if abs(change) <= ROOT * progress.now[LENGTH]:
             return
         _end(core, t + at, pinned)
         margins(core, t + at, pinned, values)
         here = values[row]
-    methods.step(core, method, t, x, trial.rate, at)
+    methods.end_at(core, method, t, x, trial.rate, at)
 
 
 @helper

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tracewire.solve.core.arrays import Vector, copy, trial_of
 from tracewire.solve.core.methods import dop853, dormand_prince, rosenbrock, runge_kutta
-from tracewire.solve.core.methods.trial import norm
+from tracewire.solve.core.methods.trial import move_end, norm
 from tracewire.solve.core.units import unit
 
 METHODS = (dormand_prince.METHOD, rosenbrock.METHOD, dop853.METHOD, runge_kutta.METHOD)
@@ -18,6 +18,7 @@ BENT = tuple(method.bent for method in METHODS)
 EXPONENT = tuple(method.exponent for method in METHODS)
 SAFETY = tuple(method.safety for method in METHODS)
 EDGE = tuple(method.edge for method in METHODS)
+NEARBY = tuple(method.nearby for method in METHODS)
 IMPLICIT = tuple(method.implicit for method in METHODS)
 FIXED_STEP = tuple(method.fixed for method in METHODS)
 LONGER = 1.2  # the error of a step grows by this to the power of 6 or 9, 3 or 5 times
@@ -51,6 +52,24 @@ def step(core: int, method: int, t: float, x: Vector, rate: Vector, h: float) ->
         runge_kutta.step(core, t, x, rate, h)
     else:
         dormand_prince.step(core, t, x, rate, h)
+
+
+@unit
+def end_at(core: int, method: int, t: float, x: Vector, rate: Vector, h: float) -> None:
+    """Let the trial step from here end at t + h: from its end on where that is nearby, else anew.
+
+    An event is located with one whole step, and an evaluation for each of its corrections.
+    """
+    trial = trial_of(core)
+    whole = trial.ends[1]
+    if not abs(h - whole) < NEARBY[method] * whole:
+        step(core, method, t, x, rate, h)
+        return
+    move_end(core, h - whole)
+    if method == DOP853:
+        dop853.bend(core, h / whole)
+    else:
+        dormand_prince.bend(core, h / whole)
 
 
 @unit
@@ -106,6 +125,7 @@ __all__ = [
     "ROSENBROCK",
     "SAFETY",
     "STEPPED",
+    "end_at",
     "error_of",
     "inside",
     "step",

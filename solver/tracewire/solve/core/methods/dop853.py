@@ -16,7 +16,9 @@ from tracewire.solve.core.methods.trial import norm
 from tracewire.solve.core.units import unit
 
 MAIN, STAGES, INNER = 12, 16, 7
-METHOD = Method("dop853", STAGES, inner=INNER, bent=1, exponent=-1 / 8, safety=0.85, edge=6.1)
+METHOD = Method(
+    "dop853", STAGES, inner=INNER, bent=1, exponent=-1 / 8, safety=0.85, edge=6.1, nearby=1e-5
+)
 """Of the tolerated error 0.85 to the power of 8 is 0.27, and 0.9 is 0.43. The edge is Hairer's."""
 PROBE = 0.4  # of a step: there the polynomial's defect is about ten times the error of a good step
 
@@ -62,6 +64,23 @@ def step(core: int, t: float, x: Vector, rate: Vector, h: float) -> None:
         into.error[i] = 0.0
         for j in range(MAIN + 1):
             into.error[i] += h * E5[j] * k[j, i]
+
+
+@unit
+def bend(core: int, part: float) -> None:
+    """The dense output of a trial whose end has moved and that is so many times as long as it was.
+
+    Its first three numbers are those of a step to this end. The others are of the fourth order.
+    """
+    trial = trial_of(core)
+    inner, h = trial.inner, trial.ends[1]
+    for i in range(len(trial.x)):
+        rise = trial.x_end[i] - trial.x[i]
+        inner[0, i] = rise
+        inner[1, i] = h * trial.stages[0, i] - rise
+        inner[2, i] = 2 * rise - h * (trial.rate_end[i] + trial.stages[0, i])
+        for row in range(3, INNER):
+            inner[row, i] *= part
 
 
 @unit

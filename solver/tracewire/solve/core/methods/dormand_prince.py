@@ -16,7 +16,7 @@ from tracewire.solve.core.methods.method import Method
 from tracewire.solve.core.methods.trial import norm
 from tracewire.solve.core.units import inlined, unit
 
-METHOD = Method("dormand_prince", stages=7, inner=3, edge=3.0)
+METHOD = Method("dormand_prince", stages=7, inner=3, edge=3.0, nearby=1e-5)
 
 C = (0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0)
 A = np.array(
@@ -102,6 +102,21 @@ def _step(core: int, t: float, x: Vector, rate: Vector, h: float, n: int) -> Non
         inner[0, i] = h * rate[i] - rise
         inner[1, i] = rise - h * k[6, i] - inner[0, i]
         inner[2, i] = h * (rest + D[5] * k[5, i] + D[6] * k[6, i])
+
+
+@unit
+def bend(core: int, part: float) -> None:
+    """The dense output of a trial whose end has moved and that is so many times as long as it was.
+
+    Its first two numbers are those of a step to this end. The last one is of the fourth order.
+    """
+    trial = trial_of(core)
+    inner, h = trial.inner, trial.ends[1]
+    for i in range(len(trial.x)):
+        rise = trial.x_end[i] - trial.x[i]
+        inner[0, i] = h * trial.stages[0, i] - rise
+        inner[1, i] = rise - h * trial.rate_end[i] - inner[0, i]
+        inner[2, i] *= part
 
 
 @unit

@@ -15,6 +15,8 @@ class Method:
     there on each has a factor of theta*(1 - theta) and others of at most 1. exponent: how the step
     follows from the error, h is multiplied with `safety` times the error to this power. edge:
     |h*eigenvalue| at the edge of its stability, inf where it has no edge or does not estimate it.
+    nearby: the part of a step by which its end may be moved by the trapezoidal rule, 0 where it may
+    not; over 1e-5 of an explicit step that rule is wrong by less than the step's rounding.
     implicit: it takes the Jacobian, counts as a step of a stiff method, and leaves no rate of the
     field at its end. fixed: its steps have the length that the user gives.
     """
@@ -26,5 +28,6 @@ class Method:
     exponent: float = -0.2
     safety: float = 0.9
     edge: float = math.inf
+    nearby: float = 0.0
     implicit: bool = False
     fixed: bool = False
