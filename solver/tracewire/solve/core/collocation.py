@@ -61,13 +61,13 @@ def _slopes(core: int, node: int, t: float) -> None:
     """J S + f_p at a node, at the time t, with S where the interval begins."""
     n = len(sensitivity_of(core).s)
     if n == 4:
-        _fill_slopes(core, node, t, 4)
+        _fill_sized(core, node, t, 4)
     else:
-        _fill_slopes(core, node, t, n)
+        _fill_sized(core, node, t, n)
 
 
 @inlined
-def _fill_slopes(core: int, node: int, t: float, n: int) -> None:
+def _fill_sized(core: int, node: int, t: float, n: int) -> None:
     """The same, built in with the number of states.
 
     What is the same at all nodes is filled in at the first one only.
