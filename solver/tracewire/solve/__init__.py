@@ -4,13 +4,13 @@
 are frozen and x' = f(x, t, m) is smooth. A crossing of g is on the half-open interval (t0, t1]: a
 zero at a step's start does not fire again. A guard that reaches zero at the known time at which a
 step ends crosses there. Guards are sampled inside each step, sampled dips are refined, and a
-crossing is located on the dense output and then on true steps, to 1e-14 of the span. Steps follow
-the error of the states; where a guard, or a force on what is held, reads what turns faster than
-that, a sine of t, a narrow pulse, the step is bounded by its pace (`compile.pace`), and by
-`max_step` where that is given. A guard that creeps beyond its level too slowly for any step to see
-it crosses where it is found there. A frozen formula may be undefined beyond its guard: a trial step
-that is not finite is rejected, and where steps underflow at a guard, the guard is crossed. A sample
-at the time of an event is the right limit; the log keeps x⁻ and x⁺.
+crossing is located on the dense output, then on a true step, to 1e-14 of the span. Steps follow the
+error of the states; where a guard, or a force on what is held, reads what turns faster than that, a
+sine of t, a narrow pulse, the step is bounded by its pace (`compile.pace`), and by `max_step` where
+that is given. A guard that creeps beyond its level too slowly for any step to see it crosses where
+it is found there. A frozen formula may be undefined beyond its guard: a trial step that is not
+finite is rejected, and where steps underflow at a guard, the guard is crossed. A sample at the time
+of an event is the right limit; the log keeps x⁻ and x⁺.
 
 **Events.** All resets that are due read x⁻ and write x⁺ together; two that write different values
 to one state are an error that names both. Then the modes are evaluated anew until they stand still,

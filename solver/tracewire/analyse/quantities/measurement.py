@@ -54,6 +54,7 @@ def measure(
     if np.ndim(found):
         what = f"'{to_text(quantity)}' is no single number"
         raise OptionError([Problem(what, hint="Write end(x), max(x) or at(x, 2).")])
-    if np.isnan(found):
-        raise AnalysisError([Problem(f"'{to_text(quantity)}' has no value: it is 0/0 or such")])
+    if not np.isfinite(found):
+        why = "0/0 or such" if np.isnan(found) else "infinite, as what is divided by zero"
+        raise AnalysisError([Problem(f"'{to_text(quantity)}' has no value: it is {why}")])
     return float(found)

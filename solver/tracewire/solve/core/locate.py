@@ -423,7 +423,8 @@ def smallest_step(core: int) -> float:
 
 @unit
 def polish(core: int, theta: float, row: int) -> None:
-    """Make the trial end at the crossing: located on the polynomial, then on true steps.
+    """Make the trial end at the crossing: located on the polynomial, then on a true step, whose end
+    is moved where that is by little.
 
     At a guard it ends on the far side, where the formula of the mode to come is defined. The end
     of a slide or of a contact is where its fraction or force is zero, but for rounding: how far a
