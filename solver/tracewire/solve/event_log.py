@@ -38,10 +38,10 @@ class Log:
         """Take what the core has logged."""
         logged = int(arrays.progress.ints[LOGGED])
         if logged:
-            rows = arrays.progress.log[:logged].copy()
+            parts = [arrays.progress.log[:logged]]
             if self.asked:
-                rows = np.hstack([rows, arrays.sensitivity.times[:logged]])
-            self._parts.append(rows)
+                parts.append(arrays.sensitivity.times[:logged])
+            self._parts.append(np.concatenate(parts, axis=1))
             arrays.progress.ints[LOGGED] = 0
             self.most += logged
 

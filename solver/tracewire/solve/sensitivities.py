@@ -219,7 +219,7 @@ def new_sensitivity(
         slopes=np.zeros((4 * n, q)),
         between=np.zeros((n, q)),
         right=np.zeros((3 * n, q)),
-        parts=np.zeros((max(3 * n, 1), q)),
+        parts=np.zeros((max(3 * n, 3), q)),
         system=np.zeros((3 * n, 3 * n) if q else (0, 0)),
         pivots=np.zeros(3 * n, dtype=np.int64),
         order=np.zeros(n + 2, dtype=np.int64),

@@ -197,7 +197,7 @@ class Sensitivity(NamedTuple):
     `instants` (M, q): how the instant moves at which each mode changes, of those that do so now.
     `bound` (M,): what was held after the last event. `steps`: what `trial` has of those that S has
     not followed yet, and the `methods` that made them; `kept`: how many, which one is in `trial`,
-    and the first sample in them. `right`, `parts` (3n, q; at least one row), `system` (3n, 3n),
+    and the first sample in them. `right`, `parts` (3n, q; at least three rows), `system` (3n, 3n),
     `pivots` (3n,), `order` (n + 2,), `weights`, `picks` and `at` (n,) are work space.
     """
 

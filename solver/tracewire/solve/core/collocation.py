@@ -205,21 +205,25 @@ def _over_size(core: int, error: Matrix) -> float:
     """The largest part of an error over the size of S there; NaN where it is not finite."""
     sensitivity, counts = sensitivity_of(core), flow_of(core).counts
     s, peak, change = sensitivity.s, sensitivity.peak, sensitivity.change
-    n, q = s.shape
+    (n, q), columns = s.shape, sensitivity.parts
     worst, total = 0.0, 0.0
     some_held = counts[SLIDING] + counts[RESTING] > 0
-    for j in range(q):
-        before, moved = 0.0, 0.0
-        for i in range(n):
-            before, moved = max(before, peak[i, j]), max(moved, abs(change[i, j]))
-        largest = max(before, moved)
-        if some_held and largest < STILL:
-            continue
-        for i in range(n):  # no branches: which of the errors is the largest cannot be foreseen
-            size = max(peak[i, j], abs(s[i, j] + change[i, j])) + NOTHING * largest
+    for j in range(q):  # row by row, as each column has a largest number and a sum of its own
+        columns[0, j], columns[1, j], columns[2, j] = 0.0, 0.0, 0.0
+    for i in range(n):
+        for j in range(q):
+            columns[0, j] = max(columns[0, j], peak[i, j], abs(change[i, j]))
+    for i in range(n):  # no branches: which of the errors is the largest cannot be foreseen
+        for j in range(q):
+            size = max(peak[i, j], abs(s[i, j] + change[i, j])) + NOTHING * columns[0, j]
             part = abs(error[i, j]) / size if error[i, j] != 0.0 else 0.0
-            worst = max(worst, part)
-            total += part
+            columns[1, j] = max(columns[1, j], part)
+            columns[2, j] += part
+    for j in range(q):
+        if some_held and columns[0, j] < STILL:
+            continue
+        worst = max(worst, columns[1, j])
+        total += columns[2, j]
     return worst if total < np.inf else np.nan
 
 

@@ -46,17 +46,19 @@ from tracewire.solve.core.collocation import (
 )
 from tracewire.solve.core.flow import OUTPUTS, RESTING, SLIDING, held, patterns
 from tracewire.solve.core.history import find_lags, is_delayed, recall
+from tracewire.solve.core.locate import smallest_step
 from tracewire.solve.core.trail import step_at
 from tracewire.solve.core.units import helper, unit
 from tracewire.solve.core.variation import OF_OUTPUTS, derive, derive_blended, held_parts
 
 SMALLEST = 1e-5  # of a step of the states
 MANY = 100  # intervals of a step: more of them count as steps, for which a run has a limit
-ROUNDING = 1e-14  # of the time: what a step must be to end later than it began
 FAR_WITHIN = 0.2  # then an interval was cut off: the next one may be as long as those before
-# of the tolerance of the states: most of the error of S is theirs then. Nine sensitivities of
-# paper A at a tolerance of 1e-6 are 1 to 4 % less exact than with 0.1.
-CAREFUL = 0.15
+# What the estimate of an interval's error may be, in units of the power 0.8 of the tolerance: as it
+# is of order 4, intervals become shorter with the tolerance as the steps of the states do, by its
+# power of 0.2. Most of the error of S is that of the states then. Inside of an interval the error
+# is larger, of order 5.
+MOST, MOST_INSIDE = 2.2, 0.15
 
 
 @helper
@@ -75,10 +77,7 @@ def begin_to_follow(core: int) -> None:
     sensitivity, rtol = sensitivity_of(core), progress_of(core).now[RTOL]
     chain, filled, now = sensitivity.chain, sensitivity.filled, sensitivity.now
     a, q = chain.shape
-    # the estimate is of order 4 in the interval, the error of order 6
-    now[TOLERANCE] = (CAREFUL * rtol) ** (2.0 / 3.0)
-    # and inside of it of order 5
-    now[INSIDE_TOLERANCE] = CAREFUL * rtol**0.8
+    now[TOLERANCE], now[INSIDE_TOLERANCE] = MOST * rtol**0.8, MOST_INSIDE * rtol**0.8
     delayed = 2 * len(history_of(core).mode)  # their rows are others at each time
     for k in range(a):
         filled[k, 0], filled[k, 1] = 0, q
@@ -135,7 +134,7 @@ def _try(core: int, sample: float, end: float) -> None:
     now, left = sensitivity_of(core).now, end - sensitivity_of(core).now[TIME]
     step_at(core, now[TIME])
     step = trial_of(core).ends[1]  # its length says how fast all is where the interval begins
-    least = max(SMALLEST * step, ROUNDING * abs(now[TIME]))
+    least = max(SMALLEST * step, smallest_step(core))
     h = min(now[INTERVAL], 3.0 * step) if now[INTERVAL] > 0.0 else step
     until, stop = sample - now[TIME], end
     if h > until and 0.0 < now[DENSE] < h:
