@@ -14,16 +14,6 @@ TOGETHER = 1e-13
 CARRIED = 1e-12  # of the size of a line: what is farther beyond its level was carried there
 
 
-@helper
-def _lines(core: int, t: float, x: Vector) -> Vector:
-    """Slope a and value b, one behind the other, of every timed guard a*t + b."""
-    plan = plan_of(core)
-    lines = np.empty(2 * len(plan.timed))
-    if len(lines):
-        evaluate(core, TIMED, t, x, lines)
-    return lines
-
-
 @unit
 def begin(core: int, t: float, x: Vector) -> None:
     """Set the timed modes to their right limit at t."""
@@ -31,8 +21,10 @@ def begin(core: int, t: float, x: Vector) -> None:
     plan = plan_of(core)
     if len(plan.timed) == 0:
         return
+    lines = np.empty(2 * len(plan.timed))  # slope a and value b of every timed guard a*t + b
     for _ in range(len(plan.timed) + 1):  # the times of one mode may depend on another
-        lines, changed = _lines(core, t, x), False
+        evaluate(core, TIMED, t, x, lines)
+        changed = False
         for row, i in enumerate(plan.timed):
             value = right_limit(core, i, lines[2 * row], t, lines[2 * row + 1])
             changed = changed or value != flow.m[i]
@@ -51,22 +43,24 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     jumps of the wave. Where another mode has it rest at zero, a comparison says what it says there.
     """
     flow, plan = flow_of(core), plan_of(core)
-    best = np.inf
-    if len(plan.timed) == 0:
+    best, count = np.inf, len(plan.timed)
+    if count == 0:
         return best
-    to[:] = np.nan
-    lines = _lines(core, t, x)
-    times, rounding = np.full(len(plan.timed), np.inf), np.zeros(len(plan.timed))
+    numbers = np.empty(4 * count)
+    lines, times, rounding = numbers[: 2 * count], numbers[2 * count :], numbers[3 * count :]
+    evaluate(core, TIMED, t, x, lines)
     for row, i in enumerate(plan.timed):
+        to[row], times[row], rounding[row] = np.nan, np.inf, 0.0
         slope, offset = lines[2 * row], lines[2 * row + 1]
         if not np.isfinite(slope):
             continue
-        size, now = abs(slope * t) + abs(offset), right_limit(core, i, slope, t, offset)
+        size = abs(slope * t) + abs(offset)
         rests = slope == 0.0 and offset == 0.0 and plan.compares[i] == 1
-        beyond = inside(core, i, slope * t + offset) < -CARRIED * size
-        if (beyond or rests) and now != flow.m[i]:
-            times[row], to[row], best = t, now, t
-            continue
+        if inside(core, i, slope * t + offset) < -CARRIED * size or rests:
+            now = right_limit(core, i, slope, t, offset)
+            if now != flow.m[i]:
+                times[row], to[row], best = t, now, t
+                continue
         if slope == 0.0:
             continue
         level, value = _change(core, i, slope)
@@ -76,11 +70,11 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
             to[row] = value
             best = min(best, times[row])
     nearest = 0.0
-    for row in range(len(times)):
+    for row in range(count):
         if times[row] == best:
             nearest = max(nearest, rounding[row])
     near = best + TOGETHER * abs(best)
-    for row in range(len(times)):
+    for row in range(count):
         if not times[row] <= near + max(nearest, rounding[row]):
             to[row] = np.nan
     return best

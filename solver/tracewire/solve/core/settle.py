@@ -161,6 +161,31 @@ def settle(core: int, t: float, x: Vector, marks: Ints, fresh: bool) -> int:
 
 
 @unit
+def stands(core: int, t: float, x: Vector, guards: Vector, level: Vector) -> bool:
+    """Whether all modes that are not timed stand as they are, so that `settle` changes none.
+
+    Fills in the guards and their levels. What is held, floors, resets and memories are for `settle`
+    to see, and so is a guard at zero.
+    """
+    flow, plan = flow_of(core), plan_of(core)
+    if len(plan.resets) + len(plan.transitions) + flow.counts[SLIDING] + flow.counts[RESTING] > 0:
+        return False
+    levels(core, t, x, level)
+    guard_values(core, t, x, guards)
+    for i in range(len(guards)):
+        if plan.is_timed[i]:
+            if _is_carried(core, i, guards[i], level[i]):
+                return False
+            continue
+        zero = plan.kind[i] == SIGN and abs(guards[i]) <= level[i]
+        if plan.kind[i] in (FLOOR, MEMORY) or zero:
+            return False
+        if not margin(core, i, guards[i]) >= -level[i]:
+            return False
+    return True
+
+
+@unit
 def marked_guards(core: int, t: float, x: Vector, marks: Ints, out: Matrix) -> None:
     """The guards (row 0) and their rates (row 1) before resets, where `forget` asks for them."""
     if np.any(marks != 0):

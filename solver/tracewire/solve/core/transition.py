@@ -63,7 +63,7 @@ from tracewire.solve.core.resets import (
     write,
 )
 from tracewire.solve.core.saltation import enter, leave, reset_sensitivities
-from tracewire.solve.core.settle import KNOWN, LEFT, forget, marked_guards, settle
+from tracewire.solve.core.settle import KNOWN, LEFT, forget, marked_guards, settle, stands
 from tracewire.solve.core.units import helper, unit
 
 CHATTER_PART = 1e-6
@@ -85,6 +85,8 @@ def happen(core: int, t: float, x: Vector) -> int:
     crossings = crossings_of(core)
     modes = len(plan.kind)
     enter(core, t, x)
+    if _only_pass_points(core, t, x):
+        return FINISHED
     for j in range(len(x)):
         x[j] += progress.beyond[j]
     progress.beyond[:] = 0.0
@@ -144,6 +146,31 @@ def happen(core: int, t: float, x: Vector) -> int:
         mark_jumps(core, t, before, x, old, bound)
     leave(core, t, before, x, old, waits)
     return status
+
+
+@unit
+def _only_pass_points(core: int, t: float, x: Vector) -> bool:
+    """Let tables of t go on to their next points; whether that is all that happens, as at most
+    samples of a measured input."""
+    flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
+    modes = len(plan.kind)
+    if is_delayed(core):
+        return False
+    for i in range(modes):
+        if crossings.how[i] >= 0 and (crossings.how[i] != TIME or plan.kind[i] != SEGMENT):
+            return False
+    numbers = np.empty((4, modes))
+    old, waits = numbers[0], numbers[1]
+    for i in range(modes):
+        old[i], waits[i] = flow.m[i], contact.FLIES
+        if crossings.how[i] >= 0:
+            flow.m[i] = crossings.to[i]
+    if stands(core, t, x, numbers[2], numbers[3]):
+        leave(core, t, x, x, old, waits)
+        return True
+    for i in range(modes):
+        flow.m[i] = old[i]
+    return False
 
 
 @unit
