@@ -60,7 +60,11 @@ INSIDE = _weights_inside()
 def _slopes(core: int, node: int, t: float) -> None:
     """J S + f_p at a node, at the time t, with S where the interval begins."""
     n = len(sensitivity_of(core).s)
-    if n == 4:
+    if n == 2:
+        _fill_sized(core, node, t, 2)
+    elif n == 3:
+        _fill_sized(core, node, t, 3)
+    elif n == 4:
         _fill_sized(core, node, t, 4)
     else:
         _fill_sized(core, node, t, n)

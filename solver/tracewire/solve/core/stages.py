@@ -39,6 +39,8 @@ def solve_stages(core: int, h: float) -> bool:
     first = sensitivity_of(core).order[n]
     if n == 2 and first == 1:
         found = _solve(core, h, 2, 1)
+    elif n == 3 and first == 1:
+        found = _solve(core, h, 3, 1)
     elif n == 4 and first == 2:
         found = _solve(core, h, 4, 2)
     else:
