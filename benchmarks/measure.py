@@ -37,20 +37,27 @@ def undisturbed() -> Iterator[None]:
 
 
 def in_turn(entrants: list[Entrant], seconds_each: float) -> None:
-    """Run everyone in turn until each has had its time; what is slow runs once."""
-    spent = {id(entrant): sum(entrant.times) for entrant in entrants}
+    """Run everyone in turn until each has had its time; what is slow runs once.
+
+    The runs of each are spread over all turns: if the fast ones went on alone at the end, a slow
+    moment before would hit only the others.
+    """
     with undisturbed():
-        for _ in range(MOST_RUNS):
-            waiting = [
-                entrant
-                for entrant in entrants
-                if not entrant.times or spent[id(entrant)] + entrant.seconds <= seconds_each
-            ]
-            if not waiting:
-                return
-            for entrant in waiting:
+        for entrant in entrants:
+            if not entrant.times:
                 entrant.times.append(entrant.run())
-                spent[id(entrant)] += entrant.times[-1]
+        counts = [_runs_left(entrant, seconds_each) for entrant in entrants]
+        turns = max(counts, default=0)
+        for turn in range(turns):
+            for entrant, count in zip(entrants, counts, strict=True):
+                if (turn + 1) * count // turns > turn * count // turns:
+                    entrant.times.append(entrant.run())
+
+
+def _runs_left(entrant: Entrant, seconds_each: float) -> int:
+    """How many more runs fit in the time that an entrant has."""
+    left = seconds_each - sum(entrant.times)
+    return max(0, min(MOST_RUNS - len(entrant.times), int(left / entrant.seconds)))
 
 
 def seconds_of(work: Callable[[], object]) -> float:
