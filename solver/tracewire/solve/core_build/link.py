@@ -14,10 +14,7 @@ SPEED = 3  # of LLVM's levels of optimisation
 
 def object_of(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
     """The object file with these functions, of which only those with names are seen."""
-    module = binding.parse_assembly(SUPPORT.read_text(encoding="ascii"))
-    for text in texts:
-        module.link_in(binding.parse_assembly(text))
-    seen = set(names)
+    module, seen = _linked([SUPPORT.read_text(encoding="ascii"), *texts]), set(names)
     for function in module.functions:
         if function.is_declaration:
             continue
@@ -32,6 +29,17 @@ def object_of(texts: Iterable[str], names: Iterable[str], target: Any) -> bytes:
     builder.getModulePassManager().run(module, builder)
     module.verify()
     return bytes(target.emit_object(module))
+
+
+def _linked(texts: Iterable[str]) -> Any:
+    """One module of all texts. They are linked in pairs, and these in pairs again: to link one in
+    takes the longer, the more there is already."""
+    modules = [binding.parse_assembly(text) for text in texts]
+    while len(modules) > 1:
+        for one, other in zip(modules[::2], modules[1::2], strict=False):
+            one.link_in(other)
+        modules = modules[::2]
+    return modules[0]
 
 
 def target_of(processor: str) -> Any:
