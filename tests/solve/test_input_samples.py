@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from solve.logs import METHODS, TIGHT, when
@@ -37,6 +37,8 @@ def driven(times: Vector, values: Vector, method: str = "dormand_prince") -> Run
 
 @settings(max_examples=25, deadline=None)
 @given(values=st.lists(st.sampled_from([-1.5, -0.4, 0.0, 0.5, 0.8, 1.5]), min_size=5, max_size=5))
+@example(values=[0.0, 0.0, -1.5, -1.5, -1.5])  # its push just reaches the friction, for 1 s
+@example(values=[0.0, 0.0, 1.5, 0.5, 0.5])
 def test_samples_on_a_line_between_others_change_nothing(values: list[float]) -> None:
     """1 s between samples, and 1/64 s with the same lines, where values and levels are exact."""
     few = np.arange(5.0)
@@ -125,3 +127,26 @@ blocks:
     result = run(text, inputs={"u": (t, t / 2)}, method=method)
     assert when(result) == pytest.approx([0.6], abs=1e-9)
     assert result["v"][-1] == pytest.approx(0.25 * (1 - 0.36) - 0.3 * 0.4, abs=1e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_push_that_just_reaches_friction_moves_nothing(sign: float, method: str) -> None:
+    """It equals the friction from the start on; from 1.5 s on it grows, and the body slips."""
+    text = """
+span: [0, 2]
+inputs: [u]
+blocks:
+  v: {type: integrator, of: a}
+  friction: {type: coulomb, rate: v, level: {value: 0.375}}
+  a: {type: sum, of: [u, friction]}
+"""
+    t = np.arange(0.0, 2.25, 0.25)
+    push = sign * (0.375 + np.maximum(t - 1.5, 0.0))
+    slips = run(text, inputs={"u": (t, push)}, method=method)
+    assert kinds(slips) == ["slip"]
+    assert when(slips) == pytest.approx([1.5], abs=1e-9)
+    assert slips["v"][-1] == pytest.approx(sign * 0.125, abs=1e-9)
+    rests = run(text, inputs={"u": (t, sign * np.minimum(0.375, 2.0 - t))}, method=method)
+    assert not rests.events
+    assert np.all(rests["v"] == 0.0)

@@ -43,6 +43,7 @@ BLOCK_ROUNDS = 6
 MOST_ROUNDS = 500
 HELD = -1  # in place of a mode: the guard stays on its surface
 UNIQUE, NOT_ALONE, NONE, NO_BLEND = 0, 1, 2, 3
+NO, BARELY, YES = range(3)  # whether modes are consistent; BARELY: nothing drives a guard away
 
 
 @unit
@@ -96,7 +97,8 @@ def _combinations(
     """How many assignments fit, and the one to take.
 
     Every assignment is tried: friction that holds goes on holding, then friction that can hold,
-    then signs, then slides of few surfaces, each group from those that change little.
+    then signs, then slides of few surfaces, each group from those that change little. Where signs
+    are barely consistent, a slide is preferred: a force that just reaches friction moves nothing.
     """
     plan = plan_of(core)
     size = len(zero)
@@ -115,20 +117,24 @@ def _combinations(
             changed += value != stored[n]
         for part in (released, plain, loose, changed):
             ranks[number] = ranks[number] * (size + 1) + part
-    found, chosen = 0, stored.copy()
+    found, chosen, barely = 0, stored.copy(), False
     for number in np.argsort(ranks, kind="mergesort"):
         assignment = all_[number]
         slides = bool(np.any(assignment == HELD))
-        if found and slides:
+        if found and slides and not barely:
             break
         assign(core, zero, assignment)
-        if _consistent(core, t, x, zero, assignment, stored, small):
-            same = bool(np.all(assignment == stored))
-            if found == 0 or same:
-                chosen = assignment.copy()
+        fits = _consistent(core, t, x, zero, assignment, stored, small, fresh)
+        if fits == NO:
+            continue
+        same = bool(np.all(assignment == stored))
+        better = barely and fits == YES and (slides or not fresh)
+        if found == 0 or same or better:
+            chosen, barely = assignment.copy(), fits == BARELY
+        if not (better and slides):
             found += 1
-            if slides or (same and not fresh):
-                break
+        if not barely and (slides or (same and not fresh)):
+            break
     return found, chosen
 
 
@@ -159,7 +165,7 @@ def _pivots(
     along = np.empty(modes)
     for round_ in range(MOST_ROUNDS):
         assign(core, zero, now)
-        if _consistent(core, t, x, zero, now, stored, small):
+        if _consistent(core, t, x, zero, now, stored, small, False) != NO:
             return 1, now
         guard_rates(core, t, x, along)
         fractions = held(core, t, x)
@@ -194,18 +200,26 @@ def assign(core: int, zero: Ints, assignment: Ints) -> None:
 
 @unit
 def _consistent(
-    core: int, t: float, x: Vector, zero: Ints, assignment: Ints, stored: Ints, small: Vector
-) -> bool:
+    core: int,
+    t: float,
+    x: Vector,
+    zero: Ints,
+    assignment: Ints,
+    stored: Ints,
+    small: Vector,
+    fresh: bool,
+) -> int:
+    """NO, BARELY or YES."""
     flow = flow_of(core)
     some = flow.counts[SLIDING]
     if some:
         fractions = held(core, t, x)[:some]
         for part in fractions:
             if not -SLACK <= part <= 1 + SLACK:  # NaN is outside too
-                return False
+                return NO
         if not is_independent(core, t, x) or _drives(core, t, x):
-            return False
-    along = np.empty(len(flow.bound))
+            return NO
+    along, barely = np.empty(len(flow.bound)), False
     guard_rates(core, t, x, along)
     moves = patterns(core, GUARD_RATES, t, x, len(flow.bound))
     for n, i in enumerate(zero):
@@ -216,20 +230,20 @@ def _consistent(
         if abs(rate) <= small[i]:
             rate = first_higher(core, t, x, i)
         if rate == 0.0:  # it stays on the surface
-            pinned = bool(
-                np.any(moves[1:, i] != 0.0)
-            )  # by what is held there: both sides are right
+            # pinned: by what is held there, so that both sides are right
+            pinned = bool(np.any(moves[1:, i] != 0.0))
             if compares_at_zero(core, t, x, i, pinned):
                 if value != plan_of(core).at_zero[i]:
-                    return False
+                    return NO
                 continue
             if not pinned and stored[n] != HELD and value != stored[n]:
-                return False  # else what was stored goes on
+                return NO  # else what was stored goes on
+            barely = barely or (not pinned and (fresh or stored[n] == HELD))
             if pinned and _drives_apart(core, t, x, i):
-                return False
+                return NO
         elif (rate > 0) != (value == 1):
-            return False
-    return True
+            return NO
+    return BARELY if barely else YES
 
 
 @unit
