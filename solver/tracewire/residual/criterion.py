@@ -84,7 +84,7 @@ class Criterion:
         self.warnings: set[tuple[str, str]] = set()
         self.scales = np.array(
             [u.scale for u in self.unknowns]
-            + [s.start_scale(name) for s in self.segments for name in s.free]
+            + [s.start_scales[name] for s in self.segments for name in s.free]
         )
         self._weights: dict[int, Vector] = {}
         self._batches: dict[int, tuple[Numbers, tuple[bool, ...], SegmentBatch]] = {}
@@ -354,7 +354,7 @@ class Criterion:
         samples = self.segments[n].samples()
         spread = CRITERION.penalty * np.maximum(np.std(samples, axis=0), sigma)
         residual = np.asarray(np.broadcast_to(spread / sigma, samples.shape))
-        scales = self.segments[n].start_scales(start)
+        scales = np.array([self.segments[n].start_scales[name] for name in start])
         none, ends = np.zeros((residual.size, 0)), np.zeros((len(self.model.states), 0))
         return Linearisation(residual, none, scales, {}, ends, ran=False)
 
@@ -366,7 +366,10 @@ class Criterion:
         def there(named: Mapping[str, float], start: Mapping[str, float]) -> Linearisation:
             return self.linearise(named, {n: start}, slopes=False)[n]
 
-        at = there(named, start)
+        if self.steps > self.budget:  # no run is worth its call
+            at = self._failed_segment(n, start, beyond_budget(self.budget))
+        else:
+            at = there(named, start)
         if not at.ran:
             return replace(at, slopes=np.zeros((at.residual.size, len(named) + len(start))))
         steps, moved = [], []
@@ -375,7 +378,7 @@ class Criterion:
             steps.append(-h if named[u.name] + h > u.high else h)
             moved.append(there({**named, u.name: named[u.name] + steps[-1]}, start))
         for state, value in start.items():
-            steps.append(CRITERION.step * max(self.segments[n].start_scale(state), abs(value)))
+            steps.append(CRITERION.step * max(self.segments[n].start_scales[state], abs(value)))
             moved.append(there(named, {**start, state: value + steps[-1]}))
         rows = np.array([(near.residual - at.residual).ravel() for near in moved])
         ends = np.array([[near.final.get(x, y) - y for x, y in at.final.items()] for near in moved])

@@ -174,6 +174,6 @@ def is_far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
     """Whether a start is where no body of this record can be: no run is worth its time there."""
     segment = windows.criterion.segments[n]
     return any(
-        not abs(value - segment.start.get(name, 0.0)) < WINDOW.far_off * segment.start_scale(name)
+        not abs(value - segment.start.get(name, 0.0)) < WINDOW.far_off * segment.start_scales[name]
         for name, value in start.items()
     )

@@ -245,7 +245,7 @@ class SegmentBatch:
             if kept != [*columns.values()]:
                 own, ends = own[:, kept], ends[:, kept]
             final = dict(zip(self.model.states, runs.final[number].tolist(), strict=True))
-            scales = segment.start_scales(start)
+            scales = np.array([segment.start_scales[name] for name in start])
             near[number] = Linearisation(residual[mine], own, scales, final, ends)
         steps = int(runs.steps.sum()) + self.limits.steps * len(runs.errors)
         warnings = frozenset(text for texts in runs.warnings.values() for text in texts)

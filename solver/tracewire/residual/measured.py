@@ -167,7 +167,7 @@ class Measured:
         """The standard deviation of the rate of each measured signal."""
         return {name: float(np.std(np.gradient(v, self.t))) for name, v in self.values.items()}
 
-    @property
+    @cached_property
     def fastest(self) -> float:
         """The largest standard deviation of a measured signal's rate."""
         return max(self.rate_spreads.values())

@@ -48,19 +48,19 @@ class ObservationModel:
             return
         self.times, parts, first = [], [], 0
         for segment, begin in zip(segments, self.begins, strict=True):
-            looks = self._looks(segment.t)
+            looks = self._looks(segment)
             times, at = np.unique(np.maximum(looks, begin), return_inverse=True)
             self.times.append(times)
             parts.append(first + at.reshape(looks.shape))
             first += len(times)
         self.at = list(np.concatenate(parts, axis=1))
 
-    def _looks(self, t: Vector) -> Vector:
-        """When the sensors look to show what they do at times (N,): (looks, N)."""
-        looks: Vector = np.array([t - sensor.delay for sensor in self.sensors])
+    def _looks(self, segment: Segment) -> Vector:
+        """When the sensors look to show what they do at the samples (N,): (looks, N)."""
+        looks: Vector = np.array([segment.t - sensor.delay for sensor in self.sensors])
         if not self.rates:
             return looks
-        step = CRITERION.rate_step * (float(np.median(np.diff(t))) if len(t) > 1 else 1.0)
+        step = CRITERION.rate_step * segment.interval
         return np.concatenate([looks, looks - step, looks + step])
 
     @property

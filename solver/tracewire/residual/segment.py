@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -64,14 +64,20 @@ class Segment:
         """The measured values, shape (N, signals) in SI."""
         return np.stack([v[self.rows] for v in self.measured.values.values()], axis=1)
 
-    def start_scale(self, state: str) -> float:
-        """The size of a free start value: what its signal, or the fastest rate of one, spreads."""
-        spread = self.measured.spreads.get(state, self.measured.fastest)
-        return max(spread, abs(self.start[state])) or 1.0
+    @cached_property
+    def interval(self) -> float:
+        """The median time between samples in s; 1 where there is one sample."""
+        return float(np.median(np.diff(self.t))) if len(self.rows) > 1 else 1.0
 
-    def start_scales(self, states: Iterable[str]) -> Vector:
-        """The sizes of some free start values."""
-        return np.array([self.start_scale(name) for name in states])
+    @cached_property
+    def start_scales(self) -> Mapping[str, float]:
+        """The sizes of start values: what the signal of each, or the fastest rate of one,
+        spreads."""
+        spreads, fastest = self.measured.spreads, self.measured.fastest
+        return {
+            name: max(spreads.get(name, fastest), abs(value)) or 1.0
+            for name, value in self.start.items()
+        }
 
 
 @dataclass(frozen=True)
