@@ -3,6 +3,7 @@ from .files import series_from_files
 from .initial_states import fit_initial_states
 from .input_noise import InputCovariance, likely_input_noise, response_in_windows, run_noise
 from .input_response import InputNoise
+from .inputs import looks_held
 from .levenberg_marquardt import bounded_step, fit_windows
 from .limits import DESCENT, WINDOW
 from .linearisation import Linearisation, Projection, wrap_to_period
@@ -85,6 +86,7 @@ __all__ = [
     "likely_input_noise",
     "load_measured",
     "longest_delay",
+    "looks_held",
     "measured_series",
     "noise_in",
     "noise_level",

@@ -247,7 +247,10 @@ def _effect(found: Found) -> list[str]:
         )
     if not unseen_errors(found):
         parts.append("No data were kept back for a final test.")
-    return [*parts, *_remains(found), *_ties(found), _moved(found)]
+    doubts = [
+        f"{effect.doubt[:1].upper()}{effect.doubt[1:]}." for effect in found.effects if effect.doubt
+    ]
+    return [*parts, *_remains(found), *_ties(found), *doubts, _moved(found)]
 
 
 def meaning_words(found: Found, effect: FoundEffect) -> str:

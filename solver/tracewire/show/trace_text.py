@@ -50,7 +50,7 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         values = ", ".join(value_words(found, effect, name) for name in effect.params)
         lines.append(f"  {partial}{effect}: {values}")
         meaning = meaning_words(found, effect).partition(": ")[2].rstrip(".")
-        lines += [f"    {text}" for text in (meaning, _ties(effect)) if text]
+        lines += [f"    {text}" for text in (meaning, _ties(effect), effect.doubt) if text]
     lines += [f"  the fit sets {name} to zero" for name in found.dropped]
     if explained := excess_words(found):
         lines.append(f"  explained: {explained}")

@@ -60,6 +60,7 @@ class FoundEffect:
     sensor's). `params` are its parameters in SI, `coefficient` the one that it is linear in,
     `intervals` 95 % intervals. `gain` is half the fall of BIC that it brought, `masked` the part of
     it that the declared parameters had imitated, `weight` its share among what was tried beside it.
+    `doubt` says what else would look like it, and what to do about that; '' where nothing is known.
     """
 
     name: str
@@ -72,6 +73,7 @@ class FoundEffect:
     gain: float = float("nan")
     masked: float = float("nan")
     weight: float = float("nan")
+    doubt: str = ""
 
     def __str__(self) -> str:
         return f"{self.name} @ {self.place}"

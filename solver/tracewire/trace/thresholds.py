@@ -59,6 +59,10 @@ class CheckOptions:
     input_ends: float = 1.5
     """Samples by which an input may begin later, or end earlier, than the signals."""
 
+    near_half: float = 0.1
+    """How near to half of the time between samples a delay is that a held input imitates, as a part
+    of that half."""
+
     again: float = 1.2
     """The way a body goes over the range of its coordinate, from which on it has come back."""
     turns: float = 5.0

@@ -14,6 +14,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.errors import TracewireError
 from tracewire.fit import describe_undetermined
+from tracewire.library import SENSOR_TERMS
 from tracewire.residual import is_of_sensor
 from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.choose.prediction import Prediction
@@ -37,6 +38,7 @@ from tracewire.trace.results.comparison import (
     rmse,
     with_unseen_phases,
 )
+from tracewire.trace.results.held_inputs import describe_held_input
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refinement import FinalModels, Rival, largest_first
 from tracewire.trace.search.search import Search, Step
@@ -130,9 +132,24 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
                 gain=gain,
                 masked=masked,
                 weight=weight,
+                doubt=_doubt_of(search, effect, final.best),
             )
         )
     return tuple(found)
+
+
+def _doubt_of(search: Search, effect: PlacedEffect, best: Trial) -> str:
+    """What else would look like a time, as of a delay, in a sensor or a drive."""
+    candidate, parameters = effect.candidate, best.model.flat.parameters
+    if candidate.place.kind == "sum":
+        return ""
+    known = parameters if candidate.block else SENSOR_TERMS
+    name = candidate.coefficient if candidate.block else candidate.parameter
+    if known[name].unit != "s":
+        return ""
+    value = _fitted_parameters(effect, best)[candidate.parameter]
+    measured, options = search.problem.measured, search.options.check
+    return describe_held_input(candidate.place.name, value, measured, options)
 
 
 def _intervals_of(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
