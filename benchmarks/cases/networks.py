@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -56,7 +57,7 @@ def _chains(options: Options) -> Result:
     for count in LENGTHS[:1] if options.quick else LENGTHS:
         model, parts = _phases(text.replace("n: 10 ", f"n: {count} "), 1.0, None)
         run = tw.simulate(model)
-        time_of_run = least(lambda model=model: tw.simulate(model), options.seconds_each / 10)
+        time_of_run = least(partial(tw.simulate, model), options.seconds_each / 10)
         blocks, steps = len(model.flat.blocks), run.statistics.steps
         each = 1e9 * time_of_run / (blocks * steps)
         shown = (str(blocks), str(steps), seconds(time_of_run), f"{each:.0f} ns")

@@ -33,10 +33,10 @@ class PathSim:
 
     def prepare(self, problem: Problem) -> Solve:
         """Import it."""
-        from pathsim import Connection, Simulation  # type: ignore[import-untyped]
-        from pathsim.blocks import ODE, Scope  # type: ignore[import-untyped]
-        from pathsim.events import ScheduleList, ZeroCrossingDown  # type: ignore[import-untyped]
-        from pathsim.solvers import RKDP54  # type: ignore[import-untyped]
+        from pathsim import Connection, Simulation
+        from pathsim.blocks import ODE, Scope
+        from pathsim.events import ScheduleList, ZeroCrossingDown
+        from pathsim.solvers import RKDP54
 
         system = problem.system
         end = float(system.times[-1])

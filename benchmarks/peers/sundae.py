@@ -29,7 +29,7 @@ class Sundae:
 
     def prepare(self, problem: Problem) -> Solve:
         """Import it."""
-        from sksundae.cvode import CVODE  # type: ignore[import-untyped]
+        from sksundae.cvode import CVODE
 
         # it warns, from C, of root functions that are zero where a segment begins
         os.environ.setdefault("SUNLOGGER_WARNING_FILENAME", os.devnull)

@@ -50,7 +50,7 @@ def drive(random: np.random.Generator, run: int, times: Times, last: float) -> T
     """In V: tones up to 130 Hz together; in the first run they grow, as an arrow does."""
     table: Times = sines(random, np.arange(3, 130, 1.7), 0.037 if run == 1 else 0.031, times)
     grows = np.minimum(1, 0.25 + times / last) if run == 1 else np.minimum(1, times / 0.05)
-    return table * grows
+    return np.asarray(table * grows)
 
 
 def cell() -> Record:

@@ -16,7 +16,7 @@ Wave = Callable[[float], float]
 Times = NDArray[np.floating[Any]]
 
 
-def tabulated(values: Array, step: float) -> Wave:
+def tabulated(values: Times, step: float) -> Wave:
     """Straight lines between values that are `step` seconds apart, from t = 0 on."""
     last = len(values) - 2
 

@@ -37,7 +37,9 @@ class Drive:
 class Unmodelled(Protocol):
     """A force at the first place that no block of the library has, with `states` of its own."""
 
-    states: int
+    @property
+    def states(self) -> int:
+        """How many."""
 
     def force(self, at: At, z: Sequence[float]) -> float:
         """The force now."""

@@ -126,6 +126,7 @@ def _case(number: int, system: str, hidden: tuple[Spec, ...]) -> Case:
 
 def floor_cases() -> tuple[Case, ...]:
     """Every case with a hidden effect."""
+    chosen: list[tuple[str, tuple[Spec, ...]]]
     chosen = [(system, (one,)) for one, systems in SINGLES for system in systems]
     chosen += [(system, pair) for pair, systems in DOUBLES for system in systems]
     return tuple(_case(k, system, hidden) for k, (system, hidden) in enumerate(chosen))

@@ -47,7 +47,7 @@ def choose_floor(
     best = best * np.sqrt(rss) / np.linalg.norm(columns[:, able] @ best)
     chosen = [
         replace(parts[k], size=parts[k].size * float(w))
-        for k, w in zip(able, best, strict=True)
+        for k, w in zip(able.tolist(), best, strict=True)
         if w
     ]
     return Floor(1.0, tuple(chosen))

@@ -76,7 +76,7 @@ def clean(rig: Rig, series: Series) -> Clean:
     count = round(rig.scenario.seconds / every)
     begin = 10 * count if series.use == "validate" and rig.scenario.continued else 0
     end = begin + 10 * (count if not begin else round(LATER * count))
-    whole = np.arange(end + 1) * (every / 10)
+    whole = np.arange(end + 1, dtype=np.float64) * (every / 10)
     rows, shown = (x[begin:] for x in states(rig, series, whole, rtol=FINAL))
     fine = whole[begin:]
     names = (rig.plant.coordinates[0], *(rig.plant.rates[:1] if rig.scenario.rates else ()))
@@ -132,7 +132,6 @@ def _noise(rig: Rig, tool: Instrument, count: int, rng: np.random.Generator) -> 
         a = tool.colour
         return np.asarray(lfilter([np.sqrt(1 - a**2)], [1, -a], white)[500:])
     if rig.scenario.noise == "lowpass":
-        b, a = butter(2, tool.colour)
-        slow = lfilter(b, a, white)[500:]
+        slow = lfilter(*butter(2, tool.colour), white)[500:]
         return np.asarray(slow / np.std(slow))
     return white[500:]

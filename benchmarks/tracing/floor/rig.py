@@ -92,7 +92,7 @@ def trajectory(rig: Rig, factor: float) -> Trajectory:
     """The clean train series on a grid of half steps."""
     half, every = half_step(rig.scenario.every, _sticks(rig))
     samples = round(rig.scenario.seconds / rig.scenario.every)
-    times = np.arange(samples * every + 1) * half
+    times = np.arange(samples * every + 1, dtype=np.float64) * half
     parts: dict[str, list[Array]] = {
         k: [] for k in ("q", "v", "u", "z", "shown", "phase", "own", "tone")
     }

@@ -175,7 +175,7 @@ def _seen(
     x: Array,
     rates: Callable[[Indices, Array], Array],
 ) -> Array:
-    y = x[0]
+    y: Array = x[0]
     for h, s in zip(terms, own, strict=True):
         if h.name == "sensor_delay":
             a = rates(k, x)[1]
