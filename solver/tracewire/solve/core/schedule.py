@@ -47,7 +47,8 @@ def upcoming(core: int, t: float, x: Vector, to: Vector) -> float:
     if count == 0:
         return best
     numbers = np.empty(4 * count)
-    lines, times, rounding = numbers[: 2 * count], numbers[2 * count :], numbers[3 * count :]
+    lines, rounding = numbers[: 2 * count], numbers[3 * count :]
+    times = numbers[2 * count : 3 * count]
     evaluate(core, TIMED, t, x, lines)
     for row, i in enumerate(plan.timed):
         to[row], times[row], rounding[row] = np.nan, np.inf, 0.0
