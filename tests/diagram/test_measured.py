@@ -234,6 +234,10 @@ def test_a_file_without_a_column_of_time(file: Path) -> None:
         ("time: t, format: {sep: x}", "unknown key of a format 'sep'; there are: comment, decimal"),
         ("time: t, use: {training: [0, 1]}", "unknown use 'training'; there are: gate, train, val"),
         ("time: t, use: {train: 3}", "a window is a pair of times. Write it like use: {train: [0,"),
+        (
+            "time: t, use: {train: [[0, 1], [3, 4]], validate: [1, 3]}",
+            "a series has one window for 'train', a pair of times. Name the file in a series more",
+        ),
         ("time: t, use: {train: [3, 2]}", "the window ends at 2, not after its begin at 3"),
         (
             "time: t, use: {train: [0, 3], validate: [2, 4]}",

@@ -157,6 +157,11 @@ class _Series:
                 hint = "Write it like use: {train: [0, 30], validate: [30, 40]}."
                 body.problems.add("a window is a pair of times", body.place(given), (), hint)
                 continue
+            if any(isinstance(item, Items) for item in given.items):
+                what = f"a series has one window for '{word}', a pair of times"
+                hint = "Name the file in a series more under measured:, with the other window."
+                body.problems.add(what, body.place(given), (), hint)
+                continue
             begin, end = (read_time(item, body, "an end of a window") for item in given.items)
             if begin is None or end is None:
                 continue

@@ -21,7 +21,7 @@ from tracewire.residual.linearisation import Linearisation, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.past import longest_delay
 from tracewire.residual.segment import Segment
-from tracewire.residual.starts import start_from_data, whole_segment
+from tracewire.residual.starts import start_from_data, states_at_rest, whole_segment
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -140,10 +140,14 @@ def with_memory(
 
 
 def _begun_at(model: Model, segment: Segment, row: int) -> Segment:
-    """A window whose run begins at a row of its series, with the free states that the data tell."""
+    """A window whose run begins at a row of its series, with the free states that the data tell;
+    inside of the series what only follows inputs begins at rest."""
     states = start_from_data(model, segment.measured, row)
     start = {name: states[name] for name in segment.free if name in states}
     begin = float(segment.measured.t[row])
+    if row > 0:
+        resting = states_at_rest(model, segment.measured, begin)
+        start |= {name: value for name, value in resting.items() if name not in segment.free}
     return replace(segment, begin=begin, start={**segment.start, **start})
 
 

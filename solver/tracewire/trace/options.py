@@ -104,6 +104,10 @@ class TraceOptions:
     """The part of the excess squared error of whole unseen runs that named effects take at least.
     On 63 generated records with a floor, right names took 0.45 and more, but for five that took
     0.13 and less; of six names that stood for the floor alone four took 0.14 and less, one 0.35."""
+    excited: float = 0.1
+    """The part of the squared error that effects take where they were fitted, which the declared
+    model must have in whole unseen runs for these to confirm them. A step answer without a step
+    had 0.02."""
     law_from: float = 2.0
     """The reduced chi-square of a rest, twice the variance of the noise, from which on it is
     asked whether it is a law that no block has."""

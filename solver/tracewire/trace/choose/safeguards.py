@@ -12,6 +12,7 @@ from tracewire.residual import project_out_initial_states
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.own_rhythm import describe_own_rhythm
 from tracewire.trace.choose.unseen import (
+    excess_of_whole_runs,
     is_no_better_on_claim,
     join_names,
     lowers_unseen,
@@ -182,14 +183,14 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
     they are waves that keep the rhythm of the motion.
     """
     declared, best = judgement.final.declared, judgement.final.best
-    share = share_of_whole_runs(search, declared, best)
+    share, what = share_of_whole_runs(search, declared, best), ""
     if share < search.options.whole_runs:
         part = f"{100 * max(share, 0):.0f} %"
         what = f"takes {part} of the excess squared error of whole unseen runs away"
     elif is_no_better_on_claim(search, declared, best):
         what = "lowers the error neither of windows nor of free runs in the part of the data that"
         what += " played no part"
-    else:
+    if not (what and _moves_alike(search, declared, best)):
         what = describe_own_rhythm(search, best)
     if not what:
         return judgement
@@ -198,6 +199,19 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
     return replace(
         judgement, verdict="unexplained", dependences=dependences, missing=missing, reason=reason
     )
+
+
+def _moves_alike(search: Search, declared: Trial, best: Trial) -> bool:
+    """Whether whole unseen runs show what effects are for; if not, the search's words say so."""
+    excess = excess_of_whole_runs(search, declared, best)
+    if excess < search.options.excited:
+        search.words.append(
+            f"whole unseen runs show {max(excess, 0.0):.0%} of the squared error that the effects"
+            " take in the fitted ones: they do not move alike, and confirm nothing; let `use:"
+            " validate` name a part, or a run, in which drives and signals move as in the rest"
+        )
+        return False
+    return True
 
 
 def refuse_mistaken(search: Search, declared: Trial, judgement: Judgement) -> None:

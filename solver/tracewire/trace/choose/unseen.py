@@ -68,6 +68,18 @@ def share_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
     return 1 - (after - count) / (before - count)
 
 
+def excess_of_whole_runs(search: Search, fewer: Trial, more: Trial) -> float:
+    """What a model leaves per residual in whole unseen runs above what one with more effects leaves
+    where it was fitted, as a part of the same where both were fitted; infinity where that is not
+    known. Near 0 these runs do not move as those did, and tell nothing of the effects."""
+    taken = fewer.reduced_chi2 - more.reduced_chi2
+    unseen = search.data_split.unseen
+    if not unseen or not taken > 0 or fewer.length != more.length:
+        return float("inf")
+    before = float(squares_on(search, unseen, fewer, _longest(unseen)).sum())
+    return (before / _count(unseen) - more.reduced_chi2) / taken
+
+
 def lowers_unseen(search: Search, fewer: Trial, more: Trial, length: int) -> bool:
     """Whether a model lowers the error of one with fewer effects on unseen windows of a length, by
     more than chance."""
