@@ -270,8 +270,8 @@ def test_an_excess_that_is_a_small_part_of_the_error_is_told_to_be_so() -> None:
         remainder=(Remainder("theta", "rad", 0.1, 6.0, 0.58, 0.1),),
     )  # fmt: skip
     whole = (
-        "> 99.99 % of what a smooth force could explain, which is 42 % of the rms error on "
-        "held-out blocks"
+        "> 99.99 % of the error that a smooth force could take away (42 % of the rms error on "
+        "held-out blocks)"
     )
     assert f"it explains {whole} and leaves 58 % of the rms error" in headline_of(found)
     assert f"  explained: {whole}" in answer_lines(found)
@@ -280,7 +280,7 @@ def test_an_excess_that_is_a_small_part_of_the_error_is_told_to_be_so() -> None:
     near = replace(held, floor=2 * blocks)
     assert excess_words(replace(found, held_out=(near,))) == "> 99.99 % of the excess error"
     useless = replace(held, floor=11 * blocks)
-    assert "which is none of the error" in excess_words(replace(found, held_out=(useless,)))
+    assert "(none of the error on" in excess_words(replace(found, held_out=(useless,)))
 
 
 def test_a_residual_that_depends_on_nothing_gets_a_next_step() -> None:

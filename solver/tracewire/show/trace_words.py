@@ -111,7 +111,7 @@ def excess_words(found: Found) -> str:
     if not reach <= 1 - WORD.out_of_reach:
         return f"{share} of the excess error"
     part = f"{percent(reach)} of the rms error" if reach > 0 else "none of the error"
-    return f"{share} of what a smooth force could explain, which is {part} on held-out blocks"
+    return f"{share} of the error that a smooth force could take away ({part} on held-out blocks)"
 
 
 def within_reach(found: Found) -> float:
