@@ -247,9 +247,7 @@ def _effect(found: Found) -> list[str]:
         )
     if not unseen_errors(found):
         parts.append("No data were kept back for a final test.")
-    doubts = [
-        f"{effect.doubt[:1].upper()}{effect.doubt[1:]}." for effect in found.effects if effect.doubt
-    ]
+    doubts = [f"{effect.doubt}." for effect in found.effects if effect.doubt]
     return [*parts, *_remains(found), *_ties(found), *doubts, _moved(found)]
 
 
