@@ -185,13 +185,18 @@ def test_the_part_of_whole_unseen_runs_that_a_model_takes(
     assert found == pytest.approx(share)
 
 
-@pytest.mark.parametrize(("after", "verdict"), [(30.0, "effect"), (48.0, "unexplained")])
+@pytest.mark.parametrize(
+    ("after", "excess", "verdict"),
+    [(30.0, 1.0, "effect"), (48.0, 1.0, "unexplained"), (48.0, 0.05, "effect")],
+)
 def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
-    after: float, verdict: str, monkeypatch: pytest.MonkeyPatch
+    after: float, excess: float, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """But where these runs hardly have what the effects take elsewhere."""
     there = run_of({(): 50.0, (DRY,): after})
     there.words, there.short_length = [], WHOLE
     monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: False)
+    monkeypatch.setattr(safeguards, "excess_of_whole_runs", lambda search, fewer, more: excess)
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
@@ -201,6 +206,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     assert found.final is final
     told = f"a model with {DRY} takes 8 % of the excess squared error of whole unseen runs away"
     assert found.reason == (told if verdict == "unexplained" else "")
+    assert len(there.words) == (excess < 0.1)
 
 
 @pytest.mark.parametrize(
@@ -245,6 +251,7 @@ def test_effects_that_do_not_help_where_the_claim_is_made_are_an_approximation(
     final: Any = SimpleNamespace(declared=(), best=Names((DRY,)))
     monkeypatch.setattr(safeguards, "undetermined_effects", lambda trial, confidence: [])
     monkeypatch.setattr(safeguards, "is_no_better_on_claim", lambda search, fewer, more: True)
+    monkeypatch.setattr(safeguards, "excess_of_whole_runs", lambda search, fewer, more: 1.0)
     monkeypatch.setattr(safeguards, "residual_map", lambda search, trial: ((), None))
     found = safeguards.safeguard(there, safeguards.Judgement("effect", final))
     assert (found.verdict, found.final) == ("unexplained", final)
