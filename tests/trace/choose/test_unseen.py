@@ -206,7 +206,7 @@ def test_effects_that_hardly_help_on_whole_unseen_runs_are_an_approximation(
     assert found.final is final
     told = f"a model with {DRY} takes 8 % of the excess squared error of whole unseen runs away"
     assert found.reason == (told if verdict == "unexplained" else "")
-    assert len(there.words) == (excess < 0.1)
+    assert bool(there.words) == (excess < TraceOptions().excited)
 
 
 @pytest.mark.parametrize(

@@ -179,8 +179,9 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
     """The judgement, or `unexplained` where unseen data do not confirm the effects.
 
     They hardly lower the error of whole unseen runs: what follows a rest of no block's form on
-    windows does not carry over to them. Or they do not lower it at all where the claim is made. Or
-    they are waves that keep the rhythm of the motion.
+    windows does not carry over to them. Or they do not lower it at all where the claim is made.
+    Both count only where these runs move alike. Or they are waves that keep the rhythm of the
+    motion.
     """
     declared, best = judgement.final.declared, judgement.final.best
     share, what = share_of_whole_runs(search, declared, best), ""
