@@ -1,5 +1,6 @@
 from .criterion import LIMITS, Criterion, half_square
 from .files import series_from_files
+from .growing_parts import follow_growing_parts, is_out_of_step
 from .initial_states import fit_initial_states
 from .input_noise import InputCovariance, likely_input_noise, response_in_windows, run_noise
 from .input_response import InputNoise
@@ -79,10 +80,12 @@ __all__ = [
     "evaluate_windows",
     "fit_initial_states",
     "fit_windows",
+    "follow_growing_parts",
     "free_names",
     "free_unknowns",
     "half_square",
     "is_of_sensor",
+    "is_out_of_step",
     "likely_input_noise",
     "load_measured",
     "longest_delay",

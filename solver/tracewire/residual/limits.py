@@ -166,6 +166,8 @@ class WindowLimits:
     """The same in lengths of the window, at most: what a short window ignores is soon forgotten."""
     initial_state_steps: Final[int] = 8
     """Gauss-Newton steps of initial states, at most."""
+    least_part: Final[int] = 10
+    """Samples of the first part of a long window to which its initial states are fitted alone."""
     far_off: Final[float] = 100.0
     """An initial state so many scales of it away from the one that the data show is refused."""
     converged: Final[float] = 1e-4

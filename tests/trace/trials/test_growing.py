@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.oscillator import problem_of, record, trial_of
+from tracewire.residual import is_out_of_step
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.trials.growing import follow_further, is_out_of_step
+from tracewire.trace.trials.growing import follow_further
 
 
 def test_a_run_over_gaps_is_followed_from_short_windows_to_its_end() -> None:
@@ -21,7 +22,7 @@ def test_a_run_over_gaps_is_followed_from_short_windows_to_its_end() -> None:
     short = trial_of(problem, length=30)
     whole = cut_windows(problem.declared, Section(pieces, 0, 240), 240, problem.states)
     astray = problem.fit((), whole, 240, {})
-    assert is_out_of_step(astray, 0.15) and not is_out_of_step(short, 0.15)
+    assert is_out_of_step(astray.windows, 0.15) and not is_out_of_step(short.windows, 0.15)
     found = follow_further(problem, short, astray, whole)
     assert found.values == pytest.approx({"k": 25.0, "c": 0.01}, rel=1e-2)
     assert found.reduced_chi2 == pytest.approx(1.0, abs=0.25)

@@ -135,11 +135,7 @@ def errors_held_out(
 def _gate_errors(problem: TraceProblem, trial: Trial, horizon: Horizon, count: int) -> Array:
     """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
     try:
-        windows = fit_initial_states(
-            evaluate_windows(
-                problem.criterion_on(trial, horizon.segments), trial.windows.inlier_limit
-            )
-        )
+        windows = problem.windows_on(trial, horizon.segments, trial.windows.inlier_limit)
     except FitError:
         columns = trial.windows.residuals[0].shape[1]
         return np.full((count, columns), np.inf)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Segment
+from tracewire.residual import Segment, is_out_of_step
 from tracewire.solve import parameter_values
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
@@ -19,7 +19,7 @@ from tracewire.trace.choose.promising import select_promising
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.growing import follow_further, is_out_of_step
+from tracewire.trace.trials.growing import follow_further
 from tracewire.trace.trials.trial import PlacedEffect, Trial, with_starts_of
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ class ModelPool:
     def in_step(self, before: Trial, trial: Trial, horizon: Horizon) -> Trial:
         """A trial at a horizon, which follows the data from the shorter windows of the trial before
         it on where it is out of step."""
-        if not is_out_of_step(trial, self.options.out_of_step):
+        if not is_out_of_step(trial.windows, self.options.out_of_step):
             return trial
         return follow_further(self.search.problem, before, trial, horizon.segments)
 

@@ -9,21 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from tracewire.errors import FitError
 from tracewire.residual import Segment
 from tracewire.trace.trials.trial import TraceProblem, Trial, with_fitted_starts
-
-
-def is_out_of_step(trial: Trial, part: float) -> bool:
-    """Whether the error of a trial's runs is more than a part of the standard deviation of the
-    measured signals."""
-    criterion, power = trial.windows.criterion, 0.0
-    for segment in trial.windows.segments:
-        sigma = criterion.sigma[segment.measured.name]
-        power += float(np.sum(np.var(segment.samples(), axis=0) / sigma**2)) * len(segment.rows)
-    return trial.rss > part**2 * power
 
 
 def follow_further(

@@ -26,6 +26,7 @@ from tracewire.residual import (
     evaluate_windows,
     fit_initial_states,
     fit_windows,
+    follow_growing_parts,
     free_unknowns,
     project_out_initial_states,
     sensor_unknowns,
@@ -324,9 +325,12 @@ class TraceProblem:
         """The residuals in sigma of a trial on other windows, where only starts are fitted."""
         return self.windows_on(trial, segments).residuals
 
-    def windows_on(self, trial: Trial, segments: Sequence[Segment]) -> Windows:
-        """A trial on other windows, where only starts are fitted."""
-        return fit_initial_states(evaluate_windows(self.criterion_on(trial, segments)))
+    def windows_on(
+        self, trial: Trial, segments: Sequence[Segment], inlier_limit: float = 2.0
+    ) -> Windows:
+        """A trial on other windows, where only starts are fitted; `inlier_limit` as in Windows."""
+        windows = evaluate_windows(self.criterion_on(trial, segments), inlier_limit)
+        return follow_growing_parts(fit_initial_states(windows), self.options.out_of_step)
 
     def criterion_on(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
         """The criterion of a trial on other windows, with its values fixed."""
