@@ -134,6 +134,30 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     assert (found.verdict if found else None) == judged
 
 
+@pytest.mark.parametrize(("longer", "told"), [(9.0, True), (1.2, False)])
+def test_what_longer_windows_show_beside_named_effects_is_told(
+    longer: float, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    search: Any = SimpleNamespace(options=TraceOptions(), words=[])
+    declared = SimpleNamespace(reduced_chi2=400.0, length=209, effects=())
+    short = SimpleNamespace(reduced_chi2=1.0, length=47, effects=("elastic_load @ alpha",))
+    final = SimpleNamespace(
+        declared=declared,
+        best=SimpleNamespace(reduced_chi2=longer, length=209, effects=short.effects),
+    )
+    monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
+    monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
+    monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
+    found = judge_at_noise(search, declared, short)  # type: ignore[arg-type]
+    assert found is not None
+    assert found.verdict == "effect"
+    words = (
+        "something smaller may be missing, too: with elastic_load @ alpha the residual is 1 σ in"
+        " windows of 47 samples, and 3 σ in windows of 209. Apply the change and trace again"
+    )
+    assert search.words == ([words] if told else [])
+
+
 @pytest.mark.parametrize(
     ("declared", "again", "reduced_chi2", "whole", "slow"),
     [

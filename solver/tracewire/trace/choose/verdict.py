@@ -117,10 +117,24 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
     final = refine(search, first, best)
     if final.best.effects:
         few = len(final.best.effects) < search.options.many_effects
-        enough = _share_of_excess(final) >= search.options.explained
-        return Judgement("effect", final) if few and enough else None
+        if not few or _share_of_excess(final) < search.options.explained:
+            return None
+        if final.best.length > best.length and final.best.reduced_chi2 > search.options.lost:
+            search.words.append(_describe_longer_windows(best, final.best))
+        return Judgement("effect", final)
     lost = final.best.length > best.length and final.best.reduced_chi2 > search.options.lost
     return Judgement("null", final) if slow or not lost else None
+
+
+def _describe_longer_windows(best: Trial, longer: Trial) -> str:
+    """In words, that a model at the noise on some windows is not so on longer ones."""
+    names = join_names(map(str, best.effects))
+    short, long = best.reduced_chi2**0.5, longer.reduced_chi2**0.5
+    return (
+        f"something smaller may be missing, too: with {names} the residual is {short:.2g} σ in"
+        f" windows of {best.length} samples, and {long:.2g} σ in windows of {longer.length}. Apply"
+        " the change and trace again"
+    )
 
 
 def _share_of_excess(final: FinalModels) -> float:
