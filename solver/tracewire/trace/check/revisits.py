@@ -40,8 +40,8 @@ def observable_candidates(
     """The candidates that a motion without return can show.
 
     Where a body is nowhere twice, as in one fall, time tells nothing that its coordinate does not:
-    effects that read the time are left out, and so are memories, which show in what is different
-    when the body comes back, and what is more in one direction than in the other. A wave over the
+    effects that read the time are left out, and so are memories of the motion, which show in what
+    is different when the body comes back, and what is more in one direction than in the other. A wave over the
     coordinate must fit into its range. A shaft that turns on and on has no spring and no stop.
     """
     angles = [name for name, unit in model.flat.units.items() if unit == "rad"]
@@ -56,7 +56,7 @@ def observable_candidates(
         timed = block is not None and any("t" in names_of(f) for f in block.formulas.values())
         if block is not None and block.effect and _even(block):
             continue
-        if timed or (block is not None and (block.states or block.modes)):
+        if timed or (block is not None and (block.modes or _remembers_motion(block))):
             continue
         of = candidate.place.q
         if (
@@ -79,6 +79,12 @@ def observable_candidates(
             )
         found.append(candidate)
     return found
+
+
+def _remembers_motion(block: Block) -> bool:
+    """Whether an effect has a memory of more than a drive: what follows a drive late has none."""
+    reads = set() if block.effect is None else {*block.effect.inputs.values()}
+    return bool(block.states) and reads != {"u"}
 
 
 def _reads_travel(block: Block, candidate: Candidate) -> bool:
