@@ -176,7 +176,12 @@ elastic_load = Block(
         {"of": "a"},
         sign=1,
         shapes={
-            "period": Shape((8.0, 16.0, 32.0, 64.0, 128.0), of="dt", least=4.0, line=True),
+            "period": Shape(
+                (8.0, 11.0, 16.0, 23.0, 32.0, 45.0, 64.0, 91.0, 128.0),
+                of="dt",
+                least=4.0,
+                line=True,
+            ),
             "damping": Shape((0.05,)),
         },
         alias=("inertia", "drive_lag", "sensor_delay"),

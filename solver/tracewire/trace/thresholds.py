@@ -67,6 +67,9 @@ class CheckOptions:
     """The way a body goes over the range of its coordinate, from which on it has come back."""
     turns: float = 5.0
     """Turns of a shaft that does not come back, from which on it has no spring and no stop."""
+    swings: float = 2.0
+    """Periods in a record of what swings on a body that does not come back, at least: what does not
+    swing follows any smooth change of its force."""
 
     spike: float = 8.0
     """Standard deviations by which a single wrong sample is off its neighbours, at least."""
@@ -420,7 +423,7 @@ class SearchOptions:
     """The likeness from which on an effect is a rival of another one."""
     related_together: float = 0.5
     """The same where two effects came together."""
-    rivals: int = 5
+    rivals: int = 7
     """Rivals of an effect that are refitted."""
     behind: float = 10.0
     """How many times the sum of squares of the best model a rival may leave in few short windows,

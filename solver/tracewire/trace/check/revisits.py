@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -41,8 +41,9 @@ def observable_candidates(
 
     Where a body is nowhere twice, as in one fall, time tells nothing that its coordinate does not:
     effects that read the time are left out, and so are memories of the motion, which show in what
-    is different when the body comes back, and what is more in one direction than in the other. A wave over the
-    coordinate must fit into its range. A shaft that turns on and on has no spring and no stop.
+    is different when the body comes back, and what is more in one direction than in the other. A
+    wave over the coordinate must fit into its range, and a period of what swings on the body into
+    the record, twice. A shaft that turns on and on has no spring and no stop.
     """
     angles = [name for name, unit in model.flat.units.items() if unit == "rad"]
     turns = {
@@ -65,26 +66,36 @@ def observable_candidates(
             and turns.get(of, 0) > options.turns
         ):
             continue
+        most: dict[str, float] = {}
         if PITCH in candidate.shapes and of:
             ranges = [float(np.ptp(run.signals[of])) for run in trajectories if of in run.signals]
-            widest = max(ranges, default=0.0)
-            grid = tuple(pitch for pitch in candidate.shapes[PITCH] if pitch <= widest)
-            low, _ = candidate.limits[PITCH]
-            if not grid or low >= widest:
-                continue
-            candidate = replace(
-                candidate,
-                shapes={**candidate.shapes, PITCH: grid},
-                limits={**candidate.limits, PITCH: (low, widest)},
-            )
-        found.append(candidate)
+            most[PITCH] = max(ranges, default=0.0)
+        if candidate.lasting:
+            longest = max(float(np.ptp(run.t)) for run in trajectories)
+            most |= dict.fromkeys(candidate.lines, longest / options.swings)
+        bounded = _bounded(candidate, most)
+        if bounded is not None:
+            found.append(bounded)
     return found
 
 
+def _bounded(candidate: Candidate, most: Mapping[str, float]) -> Candidate | None:
+    """A candidate with some shapes of it at most so large; None where nothing is left."""
+    shapes, limits = dict(candidate.shapes), dict(candidate.limits)
+    for name, largest in most.items():
+        low, high = limits[name]
+        shapes[name] = tuple(value for value in shapes[name] if value <= largest)
+        limits[name] = low, min(high, largest)
+        if not shapes[name] or low >= largest:
+            return None
+    return replace(candidate, shapes=shapes, limits=limits)
+
+
 def _remembers_motion(block: Block) -> bool:
-    """Whether an effect has a memory of more than a drive: what follows a drive late has none."""
+    """Whether an effect has a memory of where a body was and how fast: what follows a drive late,
+    or swings on the body, has none."""
     reads = set() if block.effect is None else {*block.effect.inputs.values()}
-    return bool(block.states) and reads != {"u"}
+    return bool(block.states) and not reads.isdisjoint({"q", "v"})
 
 
 def _reads_travel(block: Block, candidate: Candidate) -> bool:

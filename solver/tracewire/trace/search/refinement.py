@@ -10,6 +10,7 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
+from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
@@ -208,10 +209,12 @@ def _not_far_behind(
 
 
 def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:
-    """Effects that looked like one when it was screened, the most likely first."""
+    """Effects that looked like one when it was screened, or look like it beside it: those of no
+    more numbers first, and of these the most likely."""
     options = search.options.search
     for step in search.steps:
-        rows = {str(row.candidate): row for row in step.screen.best()}
+        rows = step.screen.observable()  # a sign that is wrong here may be right beside the others
+        rows |= {str(row.candidate): row for row in step.screen.best()}
         mine = rows.get(str(effect))
         if mine is None or step.after is None:
             continue
@@ -222,16 +225,41 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
         }
         together = len(step.after.effects) > len(step.before.effects) + 1
         least = options.related_together if together else options.related
+        beside = _likeness_beside(search, effect, step.screen)
         found = []
         for name, row in rows.items():
             if name == str(effect):
                 continue
             correlation = step.screen.columns.canonical_correlation(mine.columns, row.columns)
+            correlation = max(correlation, beside.get(name, 0.0))
             if correlation > least or name in delta_bics:
                 found.append((row.placed_effect, correlation, delta_bics.get(name, np.inf)))
-        found.sort(key=lambda item: (item[2], -item[1]))
+        most = _count_numbers(effect)
+        found.sort(key=lambda item: (item[2], _count_numbers(item[0]) > most, -item[1]))
         return [(added, correlation) for added, correlation, _ in found]
     return []
+
+
+def _likeness_beside(search: Search, effect: PlacedEffect, first: Screen) -> dict[str, float]:
+    """The correlation of effects with one that was found, beside it, by name: by the part of each
+    that was its own in the screen that found it, and is absorbed where that effect is there.
+
+    Along the runs of a model far from the data two laws may differ that do the same in the motion
+    that was measured.
+    """
+    screens = (step.screen for step in search.steps if str(effect) in map(str, step.before.effects))
+    now = next(screens, None)
+    if now is None:
+        return {}
+    before = first.observable()
+    found: dict[str, float] = {}
+    for row in now.rows:
+        name = str(row.candidate)
+        if name in before:
+            own = 1 - before[name].absorbed_fraction
+            likeness = max(1 - (1 - row.absorbed_fraction) / own, 0.0) ** 0.5
+            found[name] = max(likeness, found.get(name, 0.0))
+    return found
 
 
 def _count_numbers(effect: PlacedEffect) -> int:
