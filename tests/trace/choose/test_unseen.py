@@ -13,29 +13,46 @@ from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.unseen import (
     better_unseen,
+    describe_better_unseen,
     is_no_better_on_claim,
     lowers_unseen,
     prune_by_other_runs,
     raises_whole_runs,
     share_of_whole_runs,
+    simplify_by_unseen,
 )
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.refinement import FinalModels
 
 BLOCKS = 8
 DRY, DRIFT = "coulomb @ forces", "sensor_drift @ sensor.v"
+CURVE = "stribeck @ forces"
 HELD_OUT = {(): 100.0, (DRY,): 4.0, (DRIFT,): 60.0, (DRY, DRIFT): 2.0}
 """The mean squared residual on held-out blocks of the fitted record, by the effects of a model."""
 
 
-def prediction(held_out: dict[tuple[str, ...], float] = HELD_OUT) -> Prediction:
-    """Models with so much left on held-out blocks, of which the best is chosen."""
+def prediction(
+    held_out: dict[tuple[str, ...], float] = HELD_OUT,
+    numbers: dict[str, int] | None = None,
+    imitated: dict[str, str] | None = None,
+) -> Prediction:
+    """Models with so much left on held-out blocks, of which the best is chosen; effects have one
+    number where none is given."""
+
+    def count(names: tuple[str, ...]) -> int:
+        return 2 + sum((numbers or {}).get(name, 1) for name in names)
+
+    def imitates(names: tuple[str, ...]) -> frozenset[str]:
+        return frozenset(other for name, other in (imitated or {}).items() if name in names)
+
     options, rng = TraceOptions(), np.random.default_rng(1)
     ripple = 1 + 0.1 * rng.random((len(held_out), 1, 1, BLOCKS, 1))
     errors = ripple * np.reshape(list(held_out.values()), (-1, 1, 1, 1, 1))
-    entrants = tuple(Entrant(frozenset(names), 2 + len(names)) for names in held_out)
+    entrants = tuple(
+        Entrant(frozenset(names), count(names), imitated=imitates(names)) for names in held_out
+    )
     models: Any = tuple(
-        SimpleNamespace(names=frozenset(names), trials=[names], numbers=2 + len(names), dropped=())
+        SimpleNamespace(names=frozenset(names), trials=[names], numbers=count(names), dropped=())
         for names in held_out
     )
     groups = (tuple((block,) for block in range(BLOCKS)),)
@@ -132,12 +149,41 @@ def test_another_effect_that_does_better_on_unseen_runs_is_told(left: float, bet
     there, found = run_of({(DRY,): 50.0, drag: left}), prediction({(): 100, (DRY,): 4, drag: 16})
     there.words = []
     assert found.chosen.names == {DRY}
-    assert better_unseen(there, found) == ([2] if better else [])
-    words = (
-        f"{drag[0]} predicts held-out blocks less well than {DRY}, but leaves 0.6 times its error"
-        " in whole unseen runs: these data do not decide between them"
+    assert better_unseen(there, found) == ({2: pytest.approx(0.6)} if better else {})
+
+
+def test_what_does_better_on_unseen_runs_alone_is_told() -> None:
+    drag = "quad_drag @ forces"
+    assert describe_better_unseen(prediction({(): 100, (DRY,): 4, (drag,): 16}), 2, 0.6) == (
+        f"{drag} predicts held-out blocks less well than {DRY}, but leaves 0.6 times its error in"
+        " whole unseen runs: these data do not decide between them"
     )
-    assert there.words == ([words] if better else [])
+
+
+@pytest.mark.parametrize(
+    ("left", "imitated", "named"),
+    [(30.0, True, DRY), (47.0, True, CURVE), (30.0, False, CURVE)],
+)
+def test_the_simpler_law_is_named_where_unseen_runs_are_for_it(
+    left: float, imitated: bool, named: str
+) -> None:
+    """A Stribeck curve fits the record better; what it imitates leaves less in another run."""
+    found = prediction(
+        {(): 100, (CURVE,): 4, (DRY,): 16}, {CURVE: 2}, {CURVE: DRY} if imitated else {}
+    )
+    assert found.chosen.names == {CURVE}
+    there = run_of({(CURVE,): 50.0, (DRY,): left})
+    there.words = []
+    simpler = simplify_by_unseen(there, found)
+    assert simpler.chosen.names == {named}
+    if named == CURVE:
+        assert not there.words
+        return
+    assert [simpler.models[number].names for number, _ in simpler.choice.ties] == [{CURVE}]
+    assert there.words == [
+        f"{CURVE} predicts held-out blocks better than {DRY}, which is simpler and leaves 0.6 times"
+        " its error in whole unseen runs"
+    ]
 
 
 def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:
@@ -146,7 +192,7 @@ def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:
     left = {(DRY, WHOLE): 50.0, (drag[0], WHOLE): 30.0, (DRY, 100): 2.0, (drag[0], 100): 3.0}
     there.problem.residuals_on = lambda names, windows: [np.full(WHOLE, left[names[0], windows[0]])]
     there.words = []
-    assert better_unseen(there, found) == []
+    assert better_unseen(there, found) == {}
 
 
 @pytest.mark.parametrize(

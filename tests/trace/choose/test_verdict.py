@@ -203,3 +203,10 @@ def test_an_effect_with_a_shape_on_its_upper_bound_stands_for_another_law(
     found = verdict._describe_shape_on_bound(SimpleNamespace())  # type: ignore[arg-type]
     words = "stands for a law of another form: the pitch of wave @ torque sits on its upper bound"
     assert found == (words if told else "")
+
+
+@pytest.mark.parametrize(("cost", "words"), [(0.5, "65 % more"), (-0.5, "39 % less")])
+def test_how_much_more_or_less_another_model_leaves(cost: float, words: str) -> None:
+    assert verdict._as_good_words({"bias @ force"}, cost, 1) == (
+        f"bias @ force predicts as well: {words} error, 1 fitted number more"
+    )

@@ -66,6 +66,15 @@ class Prediction:
         ties = tuple(tie for tie in choice.ties if not self.models[tie[0]].names & left_out)
         return replace(self, choice=replace(choice, ties=ties))
 
+    def exchanging(self, number: int) -> Prediction:
+        """The same with another model chosen, by number, and the one before as its tie."""
+        scores, before = log_scores(self.errors), self.choice.chosen
+        choice = choice_of(number, self.entrants, scores, self.horizons.groups, self.options)
+        totals = scores.mean(axis=(1, 2, 3))
+        tie = before, float(totals[before] - totals[number])
+        others = tuple(one for one in choice.ties if one[0] != before)
+        return replace(self, choice=replace(choice, ties=(tie, *others)))
+
     def smaller(self) -> list[int]:
         """The numbers of the models that have some of the effects of the one that was chosen, the
         largest first."""

@@ -122,10 +122,11 @@ def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float
     return float(before.sum()), float(after.sum()), _count(unseen)
 
 
-def better_unseen(search: Search, prediction: Prediction) -> list[int]:
+def better_unseen(search: Search, prediction: Prediction) -> dict[int, float]:
     """The numbers of the models with one effect of the chosen one exchanged that do better on
-    unseen data: no worse in windows of each horizon, and surely better in whole runs. They surely
-    beat the declared model, and have at most one number more.
+    unseen data: no worse in windows of each horizon, and surely better in whole runs; and what each
+    leaves there, in units of the error of the chosen one. They surely beat the declared model, and
+    have at most one number more.
 
     What the fitted run prefers, another run may not: then neither names the effect alone.
     """
@@ -140,7 +141,7 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
         and is_sure(totals, 0, n, options)
     ]
     if not rivals:
-        return []
+        return {}
     unseen = search.data_split.unseen
     lengths = {horizon.length for horizon in prediction.horizons.each}
     whole = _longest(unseen)
@@ -149,18 +150,38 @@ def better_unseen(search: Search, prediction: Prediction) -> list[int]:
         trial = prediction.models[number].trials[-1]
         return float(np.sqrt(squares_on(search, unseen, trial, length).sum()))
 
-    found, most = [], error(chosen, whole)
+    found, most = dict[int, float](), error(chosen, whole)
     for n in rivals:
         left = error(n, whole) / most
         no_worse = all(error(n, length) <= error(chosen, length) for length in lengths)
         if no_worse and left < 1 / (1 + options.harm_few):
-            found.append(n)
-            search.words.append(
-                f"{join_names(prediction.models[n].names)} predicts held-out blocks less well than"
-                f" {join_names(prediction.chosen.names)}, but leaves {left:.2g} times its error in"
-                " whole unseen runs: these data do not decide between them"
-            )
+            found[n] = left
     return found
+
+
+def describe_better_unseen(prediction: Prediction, number: int, left: float) -> str:
+    """In words, that a model does better than the chosen one on unseen data, and not on held-out
+    blocks."""
+    return (
+        f"{join_names(prediction.models[number].names)} predicts held-out blocks less well than"
+        f" {join_names(prediction.chosen.names)}, but leaves {left:.2g} times its error in whole"
+        " unseen runs: these data do not decide between them"
+    )
+
+
+def simplify_by_unseen(search: Search, prediction: Prediction) -> Prediction:
+    """The prediction with an effect that the chosen one imitates in its place, where that takes
+    fewer numbers and does better on unseen data: the chosen one is a tie then."""
+    mine = prediction.entrants[prediction.choice.chosen]
+    for number, left in better_unseen(search, prediction).items():
+        if prediction.entrants[number].simplifies(mine):
+            search.words.append(
+                f"{join_names(prediction.chosen.names)} predicts held-out blocks better than"
+                f" {join_names(prediction.models[number].names)}, which is simpler and leaves"
+                f" {left:.2g} times its error in whole unseen runs"
+            )
+            return prediction.exchanging(number)
+    return prediction
 
 
 def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:

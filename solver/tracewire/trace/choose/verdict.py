@@ -21,10 +21,12 @@ from tracewire.trace.choose.remainder import (
 from tracewire.trace.choose.settling import describe_settling
 from tracewire.trace.choose.unseen import (
     better_unseen,
+    describe_better_unseen,
     join_names,
     model_with,
     prune_by_other_runs,
     raises_unseen,
+    simplify_by_unseen,
 )
 from tracewire.trace.found import (
     Dependence,
@@ -266,7 +268,8 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
         declared, chosen = (model.trials[-1] for model in (prediction.models[0], prediction.chosen))
         harm = raises_unseen(search, declared, chosen, lengths)
         if not harm:
-            return prune_by_other_runs(search, prediction), reason
+            pruned = prune_by_other_runs(search, prediction)
+            return simplify_by_unseen(search, pruned), reason
         left_out = join_names(prediction.chosen.dropped)
         names = prediction.chosen.names
         what = join_names(names) or f"the model without {left_out}"
@@ -293,11 +296,11 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
     options, blocks = prediction.options, prediction.horizons.count
     totals = log_scores(prediction.errors).mean(axis=(1, 2, 3))
     known = {number for number, _ in prediction.choice.ties}
-    unseen = [
-        (number, float(totals[number] - totals[prediction.choice.chosen]))
-        for number in better_unseen(search, prediction)
-        if number not in known
-    ]
+    unseen = []
+    for number, left in better_unseen(search, prediction).items():
+        search.words.append(describe_better_unseen(prediction, number, left))
+        if number not in known:
+            unseen.append((number, float(totals[number] - totals[prediction.choice.chosen])))
     others: list[tuple[float, str]] = []
     for number, cost in (*prediction.choice.ties, *unseen):
         other = prediction.models[number]
@@ -400,5 +403,5 @@ def _as_good_words(names: Collection[str], cost: float, more: int) -> str:
 
 
 def _change(cost: float) -> str:
-    percent = 100 * float(np.expm1(abs(cost)))
-    return f"{percent:.2g} % {'more' if cost > 0 else 'less'}"
+    percent = 100 * float(np.expm1(cost))
+    return f"{abs(percent):.2g} % {'more' if cost > 0 else 'less'}"
