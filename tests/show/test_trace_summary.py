@@ -15,6 +15,7 @@ from tracewire.show.trace_summary import (
     details_of,
     headline_of,
     limits_words,
+    open_words,
     paragraph_of,
     ties_words,
 )
@@ -240,6 +241,20 @@ def test_what_nothing_explains_is_told_with_place_and_variables() -> None:
     little = paragraph_of(replace(UNEXPLAINED, missing=replace(UNEXPLAINED.missing, share=0.31)))
     assert "The rest depends on no variable that was tried" in little
     assert "process noise" in little
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.83, False), (0.35, True)])
+def test_a_rest_that_a_variable_explains_is_not_said_to_depend_on_none(
+    share: float, told: bool
+) -> None:
+    assert UNEXPLAINED.missing is not None
+    found = replace(
+        UNEXPLAINED,
+        effects=FOUND.effects,
+        missing=replace(UNEXPLAINED.missing, share=0.24),
+        remainder_depends=(Dependence("sensor.theta", ("y",), share),),
+    )
+    assert ("depends on no variable that was tried" in open_words(found)) is told
 
 
 def test_a_parameter_that_moves_by_less_than_a_hundredth_absorbed_nothing() -> None:

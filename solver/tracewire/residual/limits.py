@@ -261,6 +261,8 @@ class RemarkLimits:
     """How many spans of the run a record takes whose times may be in ms."""
     far: Final[float] = 10.0
     """How many spans lie between a record and the run where both may count from other zeros."""
+    epoch: Final[float] = 1e8
+    """Seconds, three years: a time that is larger counts from a date."""
     near_pi: Final[float] = 0.3
     """In rad: a first sample so near to pi from the start counts from the other end."""
     resting: Final[int] = 5

@@ -13,7 +13,7 @@ from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, Problem
-from tracewire.formula import evaluate, quantity_hint, read_unit
+from tracewire.formula import evaluate, names_of, quantity_hint, read_unit
 from tracewire.residual.endings import alike
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.residual.limits import INPUT, REMARK
@@ -198,7 +198,11 @@ def _on_span(
             f"the record is {last - first:g} s long, and the diagram's span {end - begin:g} s: "
             "is the time in ms? Then say time: {column: ..., unit: ms}"
         )
-    if abs(first - begin) > REMARK.far * max(last - first, end - begin):
+    formulas = [*model.flat.signals.values(), *(state.rate for state in model.flat.states)]
+    timed = any("t" in names_of(formula) for formula in formulas)
+    if (timed or first > REMARK.epoch) and abs(first - begin) > REMARK.far * max(
+        last - first, end - begin
+    ):
         found.append(
             f"the first sample is at t = {first:.6g} s, far from the begin of the diagram at "
             f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"

@@ -315,7 +315,8 @@ def open_words(found: Found) -> str:
         return f"If {names} is measured with such noise, say its `sigma:` and trace again."
     if found.missing is None:
         return f"The residual depends on nothing that was tried: {_perhaps()}"
-    if found.missing.share < WORD.little:
+    left = max((d.share for d in found.remainder_depends), default=0.0)
+    if max(found.missing.share, left) < WORD.little:
         return f"The rest depends on no variable that was tried: {_perhaps()}"
     return ""
 
