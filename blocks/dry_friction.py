@@ -92,6 +92,7 @@ stribeck = Block(
         sign=1,
         shapes={"speed": Shape((0.0, 0.25, 0.5, 0.75, 0.95), of="rates"), "width": WIDTHS},
         alias=("coulomb", "quad_drag", "cubic_damping"),
+        near_rest=("v",),
     ),
     source="The form of L. C. Bo, D. Pavelescu, The friction-speed relation, Wear 82 (1982) 277.",
 )

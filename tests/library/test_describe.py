@@ -126,6 +126,7 @@ def test_a_program_is_told_the_same() -> None:
         "alias": [],
         "lacking": [],
         "both_signs": [],
+        "near_rest": [],
     }
     effect = describe_json(library(), "backlash")["effect"]
     assert isinstance(effect, dict)

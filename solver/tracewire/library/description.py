@@ -209,6 +209,8 @@ def _effect(block: Block) -> str:
         parts.append(f"only where the place lacks {lacking}")
     for symbol in effect.both_signs:
         parts.append(f"only where {SYMBOLS[symbol]} takes both signs")
+    for symbol in effect.near_rest:
+        parts.append(f"only where {SYMBOLS[symbol]} comes near zero")
     told = f"An effect that a trace tries{where}: {'; '.join(parts)}."
     return told + (
         f"\nOn many records it looks like {', '.join(effect.alias)}." if effect.alias else ""
@@ -241,6 +243,7 @@ def _effect_json(effect: Effect) -> dict[str, object]:
         "alias": list(effect.alias),
         "lacking": list(effect.lacking),
         "both_signs": list(effect.both_signs),
+        "near_rest": list(effect.near_rest),
     }
 
 

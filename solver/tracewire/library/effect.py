@@ -78,8 +78,10 @@ class Effect:
     records; it counts both ways. lacking: the effect is tried only where a place has none of these
     signals, since there is a better one for those that do. both_signs: the effect is tried only
     where these signals take both signs: elsewhere another law is the same, as a viscous friction is
-    where a body moves one way. lasting: states of the block that a run hardly forgets, as those of
-    an oscillation that is little damped: they are free where the run of a window begins.
+    where a body moves one way. near_rest: the effect is tried only where these signals come near
+    zero: elsewhere it stands for any law that falls. lasting: states of the block that a run hardly
+    forgets, as those of an oscillation that is little damped: they are free where the run of a
+    window begins.
     """
 
     coefficient: str
@@ -93,4 +95,5 @@ class Effect:
     alias: tuple[str, ...] = ()
     lacking: tuple[Symbol, ...] = ()
     both_signs: tuple[Symbol, ...] = ()
+    near_rest: tuple[Symbol, ...] = ()
     lasting: tuple[str, ...] = ()

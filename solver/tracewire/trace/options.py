@@ -64,6 +64,9 @@ class TraceOptions:
     """Steps of the refit without a fold, which begins at the fit to all data."""
     near: float = 0.05
     """The part of the error by which a model may be worse than the best and still count as near."""
+    same: float = 1e-3
+    """The part of the squared error by which the fits of two models differ at most that are one
+    model in two forms."""
     sure: float = 3.0
     """Standard errors over blocks by which a model must beat the declared one to be named."""
     block_counts: float = 0.2

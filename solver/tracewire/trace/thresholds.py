@@ -153,6 +153,8 @@ class CandidateOptions:
     """The least part of the largest rate that counts as resolved."""
     moves: float = 1e-3
     """Of the largest rate: what is slower rests."""
+    near_rest: float = 0.1
+    """Of the largest rate: what a rate that keeps its sign comes down to, to come near rest."""
     both_signs: float = 0.05
     """Of the largest absolute value of a signal: what it reaches on the other side of zero, to take
     both signs."""

@@ -121,6 +121,23 @@ def test_levels_are_taken_over_all_series() -> None:
     assert levels.of("unknown") == SignalScale(0.0, 0.0)
 
 
+@pytest.mark.parametrize(
+    ("rates", "tried"),
+    [((3.0, 9.0), False), ((0.5, 9.0), True), ((-3.0, 9.0), True)],
+    ids=["far from rest", "near rest", "through rest"],
+)
+def test_a_dip_near_rest_is_tried_where_the_record_comes_near_rest(
+    rates: tuple[float, float], tried: bool
+) -> None:
+    model = compile(read_text(PENDULUM))
+    t = np.linspace(0, 1, 50)
+    run = Trajectory(t, {"omega": np.linspace(*rates, 50), "theta": t, "torque": t})
+    scales = signal_scales_of([run], OPTIONS.candidate)
+    known = named(find_candidates(model, find_places(model), scales, OPTIONS.candidate))
+    assert ("stribeck @ torque" in known) is tried
+    assert "coulomb @ torque" in known
+
+
 def test_an_effect_is_wired_to_the_signals_of_its_place() -> None:
     coulomb = named(found_in(read_text(PENDULUM)))["coulomb @ torque"]
     assert (coulomb.block, coulomb.coefficient) == ("coulomb", "coulomb.level")

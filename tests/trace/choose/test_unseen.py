@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -26,7 +27,7 @@ from tracewire.trace.search.refinement import FinalModels
 
 BLOCKS = 8
 DRY, DRIFT = "coulomb @ forces", "sensor_drift @ sensor.v"
-CURVE = "stribeck @ forces"
+CURVE, OFFSET = "stribeck @ forces", "sensor_offset @ sensor.v"
 HELD_OUT = {(): 100.0, (DRY,): 4.0, (DRIFT,): 60.0, (DRY, DRIFT): 2.0}
 """The mean squared residual on held-out blocks of the fitted record, by the effects of a model."""
 
@@ -184,6 +185,33 @@ def test_the_simpler_law_is_named_where_unseen_runs_are_for_it(
         f"{CURVE} predicts held-out blocks better than {DRY}, which is simpler and leaves 0.6 times"
         " its error in whole unseen runs"
     ]
+
+
+@pytest.mark.parametrize(
+    ("left", "unsigned", "named"),
+    [(20.001, 0, DRY), (20.1, 0, OFFSET), (20.001, 1, OFFSET)],
+)
+def test_of_two_forms_of_one_model_that_with_a_physical_sign_is_named(
+    left: float, unsigned: int, named: str
+) -> None:
+    """The offset of a speed and a dry friction where a wheel turns one way."""
+    found = prediction({(): 100, (OFFSET,): 4, (DRY,): 6})
+    assert found.chosen.names == {OFFSET}
+    declared, offset, dry = found.models
+    rss = {id(declared): 100.0, id(offset): 20.0, id(dry): left}
+    models: Any = tuple(
+        SimpleNamespace(**{**vars(m), "trials": [SimpleNamespace(rss=rss[id(m)])]})
+        for m in found.models
+    )
+    entrants = (
+        found.entrants[0],
+        replace(found.entrants[1], unsigned=1),
+        replace(found.entrants[2], unsigned=unsigned),
+    )
+    other = replace(found, models=models, entrants=entrants).preferring_signs()
+    assert other.chosen.names == {named}
+    if named == DRY:
+        assert [other.models[number].names for number, _ in other.choice.ties] == [{OFFSET}]
 
 
 def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:

@@ -136,6 +136,9 @@ def _candidate(
         least = options.both_signs * read_there.max
         if symbol in effect.both_signs and read_there.other_side < least:
             return None
+        nearest = 0.0 if read_there.other_side > 0 else read_there.least
+        if symbol in effect.near_rest and nearest > options.near_rest * read_there.max:
+            return None
     sizes = _sizes(effect, signals, place, signal_scales, options)
     shapes: dict[str, tuple[float, ...]] = {}
     limits: dict[str, tuple[float, float]] = {}

@@ -29,7 +29,8 @@ class SignalScale:
 
     stroke: the longest way in one direction. step: the way from one sample to the next, the median
     of those that move. slowest: of a rate the smallest absolute value that is resolved. other_side:
-    the largest absolute value on the side of zero where it is smaller; infinite: not known.
+    the largest absolute value on the side of zero where it is smaller; infinite: not known. least:
+    the smallest absolute value.
     """
 
     rms: float
@@ -38,6 +39,7 @@ class SignalScale:
     step: float = 0.0
     slowest: float = 0.0
     other_side: float = np.inf
+    least: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,7 @@ def _signal_scale(parts: Sequence[Vector], options: CandidateOptions) -> SignalS
         float(np.median(_moving(steps, options.moves))),
         float(np.quantile(_moving(np.abs(x), options.moves), options.resolved_rates)),
         max(min(float(np.max(x)), -float(np.min(x))), 0.0),
+        float(np.min(np.abs(x))),
     )
 
 

@@ -75,6 +75,25 @@ class Prediction:
         others = tuple(one for one in choice.ties if one[0] != before)
         return replace(self, choice=replace(choice, ties=(tie, *others)))
 
+    def preferring_signs(self) -> Prediction:
+        """The same with an effect of a physical sign in the place of one without, where both leave
+        the same in their fits: as a dry friction and the offset of a speed, where a body turns one
+        way."""
+        mine, chosen = self.entrants[self.choice.chosen], self.chosen
+        for number, one in enumerate(self.entrants):
+            if (
+                one.exchanges(mine)
+                and one.numbers <= mine.numbers
+                and one.unsigned < mine.unsigned
+                and one.uncommon <= mine.uncommon
+                and all(
+                    abs(a.rss - b.rss) <= self.options.same * b.rss
+                    for a, b in zip(self.models[number].trials, chosen.trials, strict=True)
+                )
+            ):
+                return self.exchanging(number)
+        return self
+
     def smaller(self) -> list[int]:
         """The numbers of the models that have some of the effects of the one that was chosen, the
         largest first."""

@@ -269,7 +269,7 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
         harm = raises_unseen(search, declared, chosen, lengths)
         if not harm:
             pruned = prune_by_other_runs(search, prediction)
-            return simplify_by_unseen(search, pruned), reason
+            return simplify_by_unseen(search, pruned).preferring_signs(), reason
         left_out = join_names(prediction.chosen.dropped)
         names = prediction.chosen.names
         what = join_names(names) or f"the model without {left_out}"
