@@ -430,6 +430,9 @@ class SearchOptions:
     behind: float = 10.0
     """How many times the sum of squares of the best model a rival may leave in few short windows,
     where few steps may not bring it further."""
+    bare: float = 2.0
+    """A difference of BIC up to which the effect with fewer numbers is the better one: it is not
+    worth more than a bare mention (R. E. Kass, A. E. Raftery, Bayes factors, 1995)."""
     tied: float = 10.0
     """A rival that BIC puts less than this behind is a tie."""
     tie_blocks: int = 10

@@ -104,8 +104,9 @@ def _exchange_effect(
 ) -> tuple[Trial, tuple[Rival, ...]]:
     """The best model with the best of the rivals of one effect, and the other rivals.
 
-    A wave, a drift or their kin takes the place of a common effect only where it takes that much
-    more of what is missing; and a law goes before one that imitates it with more numbers, as
+    Of those that BIC hardly tells apart the one with the fewest numbers is the best. A wave, a
+    drift or their kin takes the place of a common effect only where it takes that much more of what
+    is missing; and a law goes before one that imitates it with more numbers, as
     Coulomb friction before a Stribeck curve, where it leaves next to nothing more.
     """
     effect = best.effects[number]
@@ -138,6 +139,8 @@ def _exchange_effect(
             not result[2].candidate.sign,
         )
     )
+    enough = results[0][0] + options.search.bare
+    results.sort(key=lambda result: result[1].unknowns if result[0] <= enough else np.inf)
     missing = declared.reduced_chi2 - best.reduced_chi2
     quality, winner, chosen = next(
         (bic, trial, added)
