@@ -200,9 +200,8 @@ def _on_span(
         )
     formulas = [*model.flat.signals.values(), *(state.rate for state in model.flat.states)]
     timed = any("t" in names_of(formula) for formula in formulas)
-    if (timed or first > REMARK.epoch) and abs(first - begin) > REMARK.far * max(
-        last - first, end - begin
-    ):
+    far = abs(first - begin) > REMARK.far * max(last - first, end - begin)
+    if far and (timed or first > REMARK.epoch):
         found.append(
             f"the first sample is at t = {first:.6g} s, far from the begin of the diagram at "
             f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"
