@@ -423,9 +423,11 @@ class SearchOptions:
     what is left, where that is no noise either. Seen on four rigs: 0.02 to 0.06."""
     related: float = 0.9
     """The likeness from which on an effect is a rival of another one."""
+    related_beside: float = 0.95
+    """The same of what an effect leaves of others where it is there."""
     related_together: float = 0.5
     """The same where two effects came together."""
-    rivals: int = 7
+    rivals: int = 5
     """Rivals of an effect that are refitted."""
     behind: float = 10.0
     """How many times the sum of squares of the best model a rival may leave in few short windows,

@@ -212,8 +212,8 @@ def _not_far_behind(
 
 
 def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:
-    """Effects that looked like one when it was screened, or look like it beside it: those of no
-    more numbers first, and of these the most likely."""
+    """Effects that looked like one when it was screened, or look like it beside it: those first
+    that are as common and have no more numbers, and of these the most likely."""
     options = search.options.search
     for step in search.steps:
         rows = step.screen.observable()  # a sign that is wrong here may be right beside the others
@@ -234,13 +234,19 @@ def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffe
             if name == str(effect):
                 continue
             correlation = step.screen.columns.canonical_correlation(mine.columns, row.columns)
+            like = correlation > least or beside.get(name, 0.0) > options.related_beside
             correlation = max(correlation, beside.get(name, 0.0))
-            if correlation > least or name in delta_bics:
+            if like or name in delta_bics:
                 found.append((row.placed_effect, correlation, delta_bics.get(name, np.inf)))
-        most = _count_numbers(effect)
-        found.sort(key=lambda item: (item[2], _count_numbers(item[0]) > most, -item[1]))
+        found.sort(key=lambda item: (item[2], *_more_than(effect, item[0], search), -item[1]))
         return [(added, correlation) for added, correlation, _ in found]
     return []
+
+
+def _more_than(effect: PlacedEffect, rival: PlacedEffect, search: Search) -> tuple[bool, bool]:
+    """Whether a rival is less common than an effect, and whether it has more numbers."""
+    rare = [one.candidate.effect in search.options.uncommon for one in (rival, effect)]
+    return rare[0] and not rare[1], _count_numbers(rival) > _count_numbers(effect)
 
 
 def _likeness_beside(search: Search, effect: PlacedEffect, first: Screen) -> dict[str, float]:
