@@ -458,20 +458,6 @@ def test_a_first_sample_far_from_the_begin_is_remarked(file: Path) -> None:
     assert one(file, "time: {column: t, zero: 1700000000}").remarks == ()
 
 
-@pytest.mark.parametrize(("start", "told"), [("0", False), ("sin(t)", True)])
-def test_a_late_first_sample_is_remarked_where_the_diagram_reads_the_time(
-    file: Path, start: str, told: bool
-) -> None:
-    rows = "".join(f"{173 + i / 8},{math.sin(i / 4)}\n" for i in range(49))
-    written(file, f"t,angle\n{rows}")
-    pull = f"  pull: {{type: expression, formula: {start} - theta}}\n"
-    text = (TOP + PLAIN).replace("of: drive", "of: pull").replace("presets:", f"{pull}presets:")
-    file.write_text(text, encoding="utf-8")
-    (run,) = load_measured(compile(read(file)))
-    far = [one for one in run.remarks if one.startswith("the first sample is at t = 173 s, far")]
-    assert bool(far) is told
-
-
 def test_an_angle_from_another_line_is_remarked(file: Path) -> None:
     t = wave(file)
     rows = (f"{x:.6g},{math.pi + 0.1 * math.cos(6 * x):.6f}" for x in t)
