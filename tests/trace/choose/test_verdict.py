@@ -139,8 +139,8 @@ def test_what_longer_windows_show_beside_named_effects_is_told(
     longer: float, told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     search: Any = SimpleNamespace(options=TraceOptions(), words=[])
-    declared = SimpleNamespace(reduced_chi2=400.0, length=209, effects=())
-    short = SimpleNamespace(reduced_chi2=1.0, length=47, effects=("elastic_load @ alpha",))
+    declared: Any = SimpleNamespace(reduced_chi2=400.0, length=209, effects=())
+    short: Any = SimpleNamespace(reduced_chi2=1.0, length=47, effects=("elastic_load @ alpha",))
     final = SimpleNamespace(
         declared=declared,
         best=SimpleNamespace(reduced_chi2=longer, length=209, effects=short.effects),
@@ -148,7 +148,7 @@ def test_what_longer_windows_show_beside_named_effects_is_told(
     monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
     monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
-    found = judge_at_noise(search, declared, short)  # type: ignore[arg-type]
+    found = judge_at_noise(search, declared, short)
     assert found is not None
     assert found.verdict == "effect"
     words = (

@@ -12,7 +12,7 @@ from tracewire.trace import trace
 Vector = NDArray[np.float64]
 
 MOTOR = """
-span: [0, 2.5]
+span: [0, 5]
 record: [angle]
 inputs: {voltage: {unit: V}}
 parameters:
