@@ -42,7 +42,7 @@ drive_lag = Block(
         {"of": "u"},
         sign=1,
         place="drive",
-        at=Shape((2.0, 6.0), of="dt"),
+        at=Shape((2.0, 6.0, 20.0, 60.0, 200.0), of="dt"),
         alias=("sensor_delay", "drive_delay", "viscous"),
     ),
 )
@@ -58,7 +58,7 @@ drive_delay = Block(
         {"of": "u"},
         sign=1,
         place="drive",
-        at=Shape((2.0, 6.0), of="dt"),
+        at=Shape((2.0, 6.0, 20.0, 60.0, 200.0), of="dt"),
         alias=("sensor_delay",),
     ),
 )

@@ -190,6 +190,30 @@ elastic_load = Block(
     source="The equation of a dynamic absorber; at a period of 0 it is inertia.",
 )
 
+viscous_load = Block(
+    name="viscous_load",
+    doc="A mass behind a damper, as a liquid in a vessel, or a second heat capacity behind a wall.",
+    inputs=(Input("of", doc="the acceleration of the body: rad/s^2, or m/s^2; K/s of heat"),),
+    parameters=(
+        Parameter("c", doc="of the damper: N m s/rad, or N s/m; W/K of heat", low=0.0),
+        Parameter("lag", "s", "the mass over c, in which it comes along", above=0.0),
+    ),
+    states=(State("slip", "of - slip/lag", "0"),),  # by how much the body is faster than the mass
+    outputs=(Output("force", "-c*slip", doc="acts on the body"),),
+    # a coordinate shows a load on a spring, too, of which this is the one without the spring
+    effect=Effect(
+        "c",
+        {"of": "a"},
+        sign=1,
+        shapes={"lag": Shape((0.01, 0.03, 0.1, 0.3), of="T", low=1e-9, most=1.0)},
+        alias=("inertia", "viscous", "drive_lag"),
+        lacking=("q",),
+        lasting=("slip",),
+    ),
+    source="The equation of a Lanchester damper; with a short lag it is inertia, with a long one"
+    " viscous friction.",
+)
+
 relaxing_spring = Block(
     name="relaxing_spring",
     doc="A spring in series with a damper, as rubber has: its force fades where the body rests.",

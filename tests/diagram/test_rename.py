@@ -134,7 +134,7 @@ def test_there_and_back_gives_the_same_text(file: str, whole: Diagram) -> None:
     diagram = whole if file == "whole" else read(shipped("diagrams") / file)
     names = parts(diagram)
     assert len(names) > 15
-    for path in names:
+    for path in names[:: 1 + len(names) // 50]:
         where, _, name = path.rpartition(".")
         new = f"{name}_zz"
         there = renamed(diagram, path, new)

@@ -31,8 +31,8 @@ FAMILIES = {
     " position_friction friction_drift load_friction",
     "hysteresis": "hysteresis dahl lugre bouc_wen play play_q stop_q",
     "stiffness": "stiffness quad_stiffness cubic_stiffness asym_stiffness backlash stiffness_drift"
-    " parametric cogging coupling_q coupling_v inertia elastic_load relaxing_spring"
-    " asymmetric_stiffness asymmetric_cubic_spring",
+    " parametric cogging coupling_q coupling_v inertia elastic_load viscous_load"
+    " relaxing_spring asymmetric_stiffness asymmetric_cubic_spring",
     "barrier": "voigt_barrier barrier overflow barrier_hi barrier_lo hunt_crossley",
     "drive": "drive_gain drive_lag drive_delay drive_saturation drive_dead_zone drive_quantiser"
     " drive_2nd_harm drive_3rd_harm",

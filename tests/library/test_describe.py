@@ -88,7 +88,8 @@ def test_an_effect_says_what_a_trace_may_do_with_it() -> None:
         " shape gap first 0.1, 0.25, 0.5 times the largest |q| of the place."
     ) in describe(library(), "backlash")
     assert (
-        "tries at the drive: coefficient tau, positive only, first 2, 6 times the sample interval;"
+        "tries at the drive: coefficient tau, positive only, first 2, 6, 20, 60, 200 times the"
+        " sample interval;"
     ) in describe(library(), "drive_lag")
     assert (
         "shape period first 0.333, 0.25, ..., 0.0167 (58 values) times the duration of the longest"

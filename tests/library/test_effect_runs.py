@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
+from scipy.linalg import expm
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.solve import Run, simulate
@@ -317,6 +318,25 @@ def test_an_elastic_load_is_a_second_mass() -> None:
         rates, (0, 3), [0.5, 0, 0.5, 0], t_eval=found.t, rtol=1e-10, atol=1e-12, max_step=0.01
     )
     np.testing.assert_allclose(found.signals["q"], exact.y[0], atol=1e-7)
+
+
+def test_a_viscous_load_is_a_second_mass_behind_a_damper() -> None:
+    c, lag, drag = 0.8, 0.5, 0.3
+    found = run(
+        f"""
+        span: [0, 3]
+        every: 0.01
+        record: [v]
+        blocks:
+          v: {{type: integrator, of: a, start: 2}}
+          drag: {{type: viscous, rate: v, c: {drag}}}
+          a: {{type: sum, of: [drag, load]}}
+          load: {{type: viscous_load, of: a, c: {c}, lag: {lag}}}
+        """
+    )
+    both = np.array([[-drag - c, c], [1 / lag, -1 / lag]])  # rates of the body and of the mass
+    exact = [(expm(both * t) @ [2, 2])[0] for t in found.t]
+    np.testing.assert_allclose(found.signals["v"], exact, atol=1e-8)
 
 
 def test_a_relaxing_spring_comes_to_the_force_of_its_damper_and_lets_go() -> None:

@@ -17,7 +17,7 @@ POSITIVE_ONLY = (
     "viscous coulomb quad_drag cubic_damping stribeck disp_friction position_friction backlash"
     " barrier barrier_hi barrier_lo hunt_crossley hysteresis dahl lugre bouc_wen drive_lag"
     " drive_delay drive_saturation drive_dead_zone drive_quantiser load_friction elastic_load"
-    " overflow"
+    " viscous_load overflow"
 )
 OF_EITHER_SIGN = (
     "bias asym_coulomb asym_viscous stiffness cubic_stiffness quad_stiffness asym_stiffness"

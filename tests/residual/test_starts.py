@@ -5,11 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from residual.models import OSCILLATOR, T, made, oscillation, series
-from tracewire.compile import compile
-from tracewire.diagram import read_text
 from tracewire.errors import OptionError
 from tracewire.residual import Measured, Sensor
-from tracewire.residual.starts import start_from_data, states_at_rest, whole_segment
+from tracewire.residual.starts import start_from_data, whole_segment
 
 
 @pytest.mark.parametrize("row", [0, 60, 120])
@@ -89,19 +87,3 @@ def test_a_free_start_that_the_data_do_not_tell_begins_where_the_diagram_does() 
 def test_a_start_of_an_unknown_state_is_told() -> None:
     with pytest.raises(OptionError, match="unknown state 'y'; there are: v, x"):
         whole_segment(made(OSCILLATOR), series(0 * T, start={"y": 1.0}))
-
-
-def test_only_what_follows_inputs_alone_comes_to_rest_with_them() -> None:
-    text = """
-span: [0, 2]
-inputs: [u, other]
-blocks:
-  late: {type: drive_lag, of: u, tau: 0.5}
-  total: {type: integrator, of: u}
-  unknown: {type: drive_lag, of: other, tau: 0.5}
-  behind: {type: drive_lag, of: total, tau: 0.5}
-  spring: {type: elastic_load, of: u, m: 0.2, period: 2, damping: 0.1}
-"""
-    measured = Measured("run", "train", T, {}, inputs={"u": (T, 2 * T)})
-    model = compile(read_text(text))
-    assert states_at_rest(model, measured, 1.5) == pytest.approx({"late.w": 3.0})

@@ -171,9 +171,17 @@ def refine_initial_states(windows: Windows, rows: Sequence[int], steps: int) -> 
 
 
 def is_far_off(windows: Windows, n: int, start: Mapping[str, float]) -> bool:
-    """Whether a start is where no body of this record can be: no run is worth its time there."""
+    """Whether a start is where no body of this record can be: no run is worth its time there.
+
+    A state that is not measured may be a rate of a signal, or of the kind of a signal itself.
+    """
     segment = windows.criterion.segments[n]
+    spreads = segment.measured.spreads
+    scales = {
+        name: scale if name in spreads else max(scale, *spreads.values())
+        for name, scale in segment.start_scales.items()
+    }
     return any(
-        not abs(value - segment.start.get(name, 0.0)) < WINDOW.far_off * segment.start_scales[name]
+        not abs(value - segment.start.get(name, 0.0)) < WINDOW.far_off * scales[name]
         for name, value in start.items()
     )

@@ -177,6 +177,10 @@ class WindowLimits:
     diverged: Final[float] = 10.0
     """The mean squared residual of a window, in units of the median of all, from which on its
     initial state may be wrong."""
+    forgotten: Final[float] = 40.0
+    """Time constants after which nothing is left of what a lag was."""
+    rest_moved: Final[float] = 1.1
+    """The factor of all parameters by which a rest that depends on them is seen."""
     beside: Final[tuple[float, ...]] = (-2.0, -1.0, 1.0, 2.0)
     """Standard deviations of the noise beside what the data tell, at which a measured state of a
     window that diverged is tried, too."""

@@ -23,6 +23,7 @@ from tracewire.residual.inputs import between_samples
 from tracewire.residual.limits import WINDOW
 from tracewire.residual.local_quartics import quartic_points
 from tracewire.residual.remarks import check_quantities, factor_of_column, remarks_of
+from tracewire.residual.rest import states_at_rest
 from tracewire.residual.sensor import PLAIN, Sensor, read_sensor
 from tracewire.solve import Driving, Options, parameter_values
 
@@ -285,6 +286,12 @@ def _measured(
     used = record.t[rows]
     few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
     seen = read if few else read.trim(used[0], used[-1])
+    start = {
+        name: None if value is None else evaluate(value.formula, values) * value.factor
+        for name, value in series.start.items()
+    }
+    if start:  # else a run begins at the diagram's own start
+        start = {**states_at_rest(model, values, inputs, float(t[rows[0]])), **start}
     return Measured(
         name=f"{series.name} ({use})" if series.windows else series.name,
         series=series.name,
@@ -314,10 +321,7 @@ def _measured(
             for name, channel in series.inputs.items()
             if channel.sigma is not None
         },
-        start={
-            name: None if value is None else evaluate(value.formula, values) * value.factor
-            for name, value in series.start.items()
-        },
+        start=start,
         drift_from=float(t[_window(series, record, _whole(series))[0]]),
         parameters=own,
         free={name: v.fit for name, v in series.parameters.items() if v.fit is not None},

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import FormulaError, OptionError, unknown
-from tracewire.formula import Name, evaluate, names_of
+from tracewire.errors import OptionError, unknown
+from tracewire.formula import Name, evaluate
 from tracewire.residual.local_quartics import LocalQuartics, rows_around
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
-from tracewire.solve import parameter_values, values_at
+from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 Rows = NDArray[np.intp]
@@ -44,30 +44,6 @@ def states_from_data(model: Model, measured: Measured, rows: Rows) -> dict[str, 
         rate = states[name].rate
         if isinstance(rate, Name) and rate.name in states and rate.name not in measured.values:
             found[rate.name] = quartics.slopes
-    return found
-
-
-def states_at_rest(model: Model, measured: Measured, t: float) -> dict[str, float]:
-    """The states that follow inputs of a series alone, as that of a lag does: where they come to
-    rest with the inputs as they are at the time t in s.
-
-    Such a state has a rate that reads nothing else, is linear in it, and falls with it; its start
-    in the diagram is one for the begin of a record.
-    """
-    known = parameter_values(model, measured.parameters, measured.preset)
-    known |= {name: float(values_at(u, np.array([t]))[0]) for name, u in measured.inputs.items()}
-    found: dict[str, float] = {}
-    for state in model.flat.states:
-        names = {*names_of(state.rate)} - {state.name}
-        if names.isdisjoint(measured.inputs) or not names <= known.keys():
-            continue
-        try:
-            at = [evaluate(state.rate, {**known, state.name: w}) for w in (0.0, 1.0, 2.0)]
-        except FormulaError:
-            continue
-        slope = at[1] - at[0]
-        if slope < 0 and np.isclose(at[2] - at[1], slope):
-            found[state.name] = -at[0] / slope
     return found
 
 

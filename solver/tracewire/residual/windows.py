@@ -20,8 +20,10 @@ from tracewire.residual.limits import WINDOW
 from tracewire.residual.linearisation import Linearisation, Projection
 from tracewire.residual.measured import Measured
 from tracewire.residual.past import longest_delay
+from tracewire.residual.rest import states_along_inputs
 from tracewire.residual.segment import Segment
-from tracewire.residual.starts import start_from_data, states_at_rest, whole_segment
+from tracewire.residual.starts import start_from_data, whole_segment
+from tracewire.solve import parameter_values
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -62,9 +64,8 @@ def cut_windows(model: Model, section: Section, length: int, free: Sequence[str]
     windows = []
     for a, b in pairwise(edges):
         if a == int(whole.rows[0]):
-            start = {name: whole.start[name] for name in free if name in whole.start}
-            start |= {name: whole.start.get(name, 0.0) for name in whole.free}
-            windows.append(Segment(measured, whole.begin, np.arange(a, b), start, whole.free))
+            rows = np.arange(a, b)
+            windows.append(Segment(measured, whole.begin, rows, whole.start, whole.free))
             continue
         t = measured.t
         row = a if t[a] - t[a - 1] > t[b - 1] - t[a] and b - a > 1 else a - 1
@@ -110,13 +111,18 @@ def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) ->
 
 
 def with_memory(
-    model: Model, segments: Sequence[Segment], lasting: Sequence[str] = ()
+    model: Model,
+    segments: Sequence[Segment],
+    lasting: Sequence[str] = (),
+    values: Mapping[str, float] | None = None,
 ) -> list[Segment]:
     """Windows whose runs find what a model remembers beside the states that are free at a start.
 
-    A lag or a hysteresis begins as its block says, which is wrong inside a record. So the run of a
-    window that follows no other begins ahead of it, by twice its length or a tenth of the series.
-    States that are `lasting` are free there: no run ahead would forget where they began.
+    A lag or a hysteresis begins as its block says, which is wrong inside a record. A lag of an
+    input is where the input has led it, with the parameters in `values`. Of what else is
+    remembered the run of a window that follows no other begins ahead of it, by twice its length or
+    a tenth of the series. States that are `lasting` are free there: no run ahead would forget where
+    they began.
     """
     found: list[Segment] = []
     remembers = any(mode.kind == "memory" for mode in model.modes)
@@ -129,26 +135,40 @@ def with_memory(
             start = {**dict.fromkeys(lasting, 0.0), **segment.start}
             free = tuple(dict.fromkeys((*segment.free, *lasting)))
             segment = replace(segment, start=start, free=free)
-        known = set(model.states) <= set(segment.free) and not remembers
         t, row = segment.measured.t, int(segment.rows[0]) - 1
-        if not known and row > 0 and segment.begin >= t[row]:
+        led = _led_by_inputs(model, segment, values or {})
+        known = set(model.states) <= {*segment.free, *led} and not remembers
+        if led and row < 0:
+            segment = replace(segment, start={**led, **segment.start})
+        elif led and known:
+            segment = replace(segment, start={**segment.start, **led})
+        elif not known and row > 0 and segment.begin >= t[row]:
             most = WINDOW.remembered_windows * len(segment.rows)
             ahead = min(int(WINDOW.remembered * len(t)), most)
-            segment = _begun_at(model, segment, max(row - ahead, 0))
+            segment = _begun_at(model, segment, max(row - ahead, 0), values or {})
         found.append(segment)
     return found
 
 
-def _begun_at(model: Model, segment: Segment, row: int) -> Segment:
-    """A window whose run begins at a row of its series, with the free states that the data tell;
-    inside of the series what only follows inputs begins at rest."""
+def _led_by_inputs(model: Model, segment: Segment, values: Mapping[str, float]) -> dict[str, float]:
+    """The states that are not free and follow inputs alone, where the run of a window begins."""
+    measured, own = segment.measured, model.flat.parameters
+    given = {name: value for name, value in values.items() if name in own}
+    known = parameter_values(model, {**given, **measured.parameters}, measured.preset)
+    led = states_along_inputs(model, known, measured.inputs, segment.begin)
+    return {name: value for name, value in led.items() if name not in segment.free}
+
+
+def _begun_at(
+    model: Model, segment: Segment, row: int, values: Mapping[str, float] | None = None
+) -> Segment:
+    """A window whose run begins at a row of its series, with the free states that the data tell,
+    and those that its inputs have led there."""
     states = start_from_data(model, segment.measured, row)
     start = {name: states[name] for name in segment.free if name in states}
-    begin = float(segment.measured.t[row])
-    if row > 0:
-        resting = states_at_rest(model, segment.measured, begin)
-        start |= {name: value for name, value in resting.items() if name not in segment.free}
-    return replace(segment, begin=begin, start={**segment.start, **start})
+    begun = replace(segment, begin=float(segment.measured.t[row]))
+    led = _led_by_inputs(model, begun, values or {})
+    return replace(begun, start={**segment.start, **start, **led})
 
 
 @dataclass(frozen=True, eq=False)

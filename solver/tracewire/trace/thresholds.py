@@ -163,10 +163,11 @@ class CandidateOptions:
     variants: int = 160
     """Choices of the shapes of one candidate that are screened, at most."""
     memory_tolerance: float = 1e-4
-    """The relative tolerance of what memories put out: a thousandth of it is no matter to a
-    screen."""
+    """The relative tolerance of what memories put out: a screen needs no more."""
     pure_tone: float = 0.02
     """The part of a drive's variance that its sine may leave."""
+    longest_lag: float = 0.25
+    """The part of the longest series that a lag takes at most where it is first tried."""
 
     samples_in_a_wave: float = 4.0
     """Samples that a wave takes at least: along the coordinate at the median rate, or in time."""
@@ -186,14 +187,13 @@ class CandidateOptions:
     line_finer: int = 4
     """Frequencies of the spectrum for each that is independent: a refit finds what lies between."""
     line_sparse: float = 20.0
-    """Times its samples that a record with gaps, or of several rates, may have room for: in what is
-    longer no lines are looked for, as the spectrum would fill the memory."""
+    """Times its samples that a record with gaps may have room for: of what is longer the spectrum
+    would fill the memory."""
     line_near: int = 25
-    """Frequencies, 1 over the length of the record apart, among whose power a line stands out."""
+    """Frequencies, 1 over the record's length apart, among whose power a line stands out."""
     line_around: float = 2.0
-    """Frequencies, 1 over the length of the record apart, on either side of the sum of two lines in
-    which the period of a wave that modulates a signal is looked for: the lines of a free swing are
-    that wide."""
+    """Frequencies, 1 over the record's length apart, beside the sum of two lines where the period
+    of a wave that modulates a signal is looked for: the lines of a swing are that wide."""
     modulated_lines: int = 2
     """Lines of a signal, the highest ones, that a wave which modulates it is looked for beside."""
     modulated_least: float = 0.01
@@ -235,7 +235,7 @@ class TrialOptions:
     """The part by which the squared error falls on the gate, at least, of a model at the noise.
     Study: with many samples everything tiny is significant."""
     gate_material: float = 1 / 3
-    """The same of a model far above the noise, where everything is significant."""
+    """Far above it everything is significant: the part of what is above the noise that falls."""
     gate_noise: float = 1.5
     """The reduced chi-square up to which the gate and the pruning take a model to be at the
     noise."""

@@ -32,7 +32,12 @@ from tracewire.trace.choose.noisy_inputs import (
     shown_input_noise,
 )
 from tracewire.trace.choose.prediction import Prediction, predict
-from tracewire.trace.choose.safeguards import fit_declared, refuse_mistaken, safeguard
+from tracewire.trace.choose.safeguards import (
+    fit_declared,
+    refuse_mistaken,
+    safeguard,
+    tell_waves_tried_once,
+)
 from tracewire.trace.choose.verdict import Judgement, judge_at_noise, judge_prediction
 from tracewire.trace.found import Found
 from tracewire.trace.options import TraceOptions
@@ -113,6 +118,7 @@ def _run(search: Search) -> _Ended:
             found = judge_prediction(search, prediction)
         judgement = safeguard(search, found)
         refuse_mistaken(search, declared, judgement)
+        tell_waves_tried_once(search, judgement)
     except (KeyboardInterrupt, OutOfTime) as stopped:
         if search.best is None:
             raise

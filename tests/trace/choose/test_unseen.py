@@ -187,6 +187,15 @@ def test_the_simpler_law_is_named_where_unseen_runs_are_for_it(
     ]
 
 
+def test_what_has_a_number_more_and_does_better_on_unseen_runs_is_told() -> None:
+    found = prediction({(): 100, (DRY,): 3.1, (CURVE,): 3}, {CURVE: 2})
+    assert found.chosen.names == {DRY}
+    assert describe_better_unseen(found, 2, 0.4) == (
+        f"{CURVE} has more fitted numbers than {DRY}, and leaves 0.4 times its error in whole"
+        " unseen runs: these data do not decide between them"
+    )
+
+
 @pytest.mark.parametrize(
     ("left", "unsigned", "named"),
     [(20.001, 0, DRY), (20.1, 0, OFFSET), (20.001, 1, OFFSET)],
@@ -416,3 +425,32 @@ def test_where_only_the_end_of_the_run_refuses_another_run_is_asked_for(
     assert reason.endswith("multiplies the error by 9")
     asked = [words for words in there.words if "with `use: validate`" in words]
     assert len(asked) == (not runs)
+
+
+@pytest.mark.parametrize(
+    ("left", "wave", "verdict", "told"),
+    [
+        (6.25, True, "effect", True),
+        (1.5, True, "effect", False),  # at the noise nothing is left
+        (6.25, False, "effect", False),
+        (6.25, True, "unexplained", False),
+    ],
+)
+def test_another_wave_of_a_named_kind_takes_another_trace(
+    left: float, wave: bool, verdict: str, told: bool
+) -> None:
+    """A motor has ripples of several pitches; one cogging is tried at a place."""
+
+    class Effect:
+        candidate = SimpleNamespace(waves=("pitch",) if wave else (), lines=())
+
+        def __str__(self) -> str:
+            return "cogging @ shaft"
+
+    search: Any = SimpleNamespace(options=TraceOptions(), words=[])
+    best = SimpleNamespace(effects=(Effect(),), reduced_chi2=left)
+    judgement: Any = SimpleNamespace(verdict=verdict, final=SimpleNamespace(best=best))
+    safeguards.tell_waves_tried_once(search, judgement)
+    words = "cogging @ shaft is tried once, and 2.5 σ are left, where 1 is the noise: for another"
+    words += " wave of this kind apply the change and trace again"
+    assert search.words == [words] * told

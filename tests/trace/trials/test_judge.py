@@ -82,3 +82,9 @@ def test_a_window_in_which_both_lose_their_track_does_not_count() -> None:
 
 def test_without_an_error_there_is_nothing_to_improve() -> None:
     assert judged([0.0, 0.0], [0.0, 0.0]).words == "gate: nothing to improve"
+
+
+def test_what_the_noise_has_on_the_gate_is_no_error_that_could_fall() -> None:
+    """What acts seldom may act little there: of 1.3 noise variances only 0.3 can fall."""
+    assert judged([1.3] * WINDOWS, [1.15] * WINDOWS, s2=5.0).passed
+    assert not judged([1.3] * WINDOWS, [1.21] * WINDOWS, s2=5.0).passed

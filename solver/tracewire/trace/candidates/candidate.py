@@ -20,8 +20,9 @@ class Candidate:
     values of the other unknowns that are tried first, by parameter, in SI. scale: a coefficient
     that matters: where the effect is as large as the sum at its place (at a drive: as the drive, at
     a sensor: as the signal). at: the coefficient at which a screen takes the output where that is
-    not linear. neutral: the coefficient at which the effect vanishes, 1 for the gain of a sensor.
-    of: the place of the other body that it reads, or the drive, where there are several.
+    not linear; it is each of `at_sizes` in turn. neutral: the coefficient at which the effect
+    vanishes, 1 for the gain of a sensor. of: the place of the other body that it reads, or the
+    drive, where there are several.
     """
 
     effect: str
@@ -35,6 +36,7 @@ class Candidate:
     at: float = 1.0
     neutral: float = 0.0
     of: str = ""
+    at_sizes: tuple[float, ...] = ()
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
     """The bounds of each unknown by its parameter."""
     own: Mapping[str, Mapping[str, float]] = field(default_factory=dict, hash=False)

@@ -157,12 +157,14 @@ def _candidate(
             grid = tuple(dict.fromkeys(min(max(value, low), high) for value in grid))
         shapes[parameter] = grid
         limits[parameter] = low, high
-    at = 1.0
+    at_sizes: tuple[float, ...] = (1.0,)
     if effect.at is not None:
         values = _grid(effect.at, sizes)
         if values is None:
             return None
-        at = values[0]
+        longest = options.longest_lag * signal_scales.duration
+        at_sizes = (values[0], *(value for value in values[1:] if value < longest))
+    at = at_sizes[0]
     low, high = bounds_of(kind, effect.coefficient)
     limits[effect.coefficient] = max(low, 0.0) if effect.sign else low, high
     base = signal_scales.of(place.definition if place.kind == "drive" else place.name).rms
@@ -188,6 +190,7 @@ def _candidate(
         modulated={n: signals[s.modulates] for n, s in effect.shapes.items() if s.modulates},
         fixed=tuple(name for name, shape in effect.shapes.items() if shape.fixed),
         alias=effect.alias,
+        at_sizes=at_sizes,
         each=effect.each,
         lasting=tuple(f"{block}.{state}" for state in effect.lasting),
     )

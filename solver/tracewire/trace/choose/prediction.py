@@ -94,6 +94,10 @@ class Prediction:
                 return self.exchanging(number)
         return self
 
+    def total(self, number: int) -> float:
+        """The mean log score of a model on held-out blocks, the less the better."""
+        return float(log_scores(self.errors)[number].mean())
+
     def smaller(self) -> list[int]:
         """The numbers of the models that have some of the effects of the one that was chosen, the
         largest first."""

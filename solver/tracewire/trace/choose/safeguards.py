@@ -71,6 +71,18 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     return judgement
 
 
+def tell_waves_tried_once(search: Search, judgement: Judgement) -> None:
+    """Say that more waves of a named kind may be left: a search tries one of a kind at a place."""
+    best = judgement.final.best
+    kinds = [str(e) for e in best.effects if e.candidate.waves or e.candidate.lines]
+    named = judgement.verdict == "effect" and kinds
+    if named and best.reduced_chi2 > search.options.informative:
+        search.words.append(
+            f"{join_names(kinds)} is tried once, and {best.reduced_chi2**0.5:.2g} σ are left, where"
+            " 1 is the noise: for another wave of this kind apply the change and trace again"
+        )
+
+
 def undetermined_effects(trial: Trial, confidence: float) -> list[str]:
     """The effects of a trial, by name, whose coefficient may as well be zero.
 

@@ -31,8 +31,9 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
         before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
         if not np.isfinite(before.sum()):
             continue
+        longest = min(length, _longest(unseen))
         if not np.isfinite(after.sum()):
-            return f"does not run through unseen windows of {length} samples"
+            return f"does not run through unseen windows of {longest} samples"
         rise, count = after - before, len(before)
         many = count >= options.few_windows
         part = options.harm if many else options.harm_few
@@ -41,7 +42,7 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
         error = float(np.std(rise, ddof=1)) * count**0.5 if many else 0.0
         if rise.sum() > options.harm_errors * error:
             factor = (after.sum() / before.sum()) ** 0.5 if before.sum() > 0 else float("inf")
-            return f"multiplies the error on unseen windows of {length} samples by {factor:.3g}"
+            return f"multiplies the error on unseen windows of {longest} samples by {factor:.3g}"
     return ""
 
 
@@ -161,11 +162,15 @@ def better_unseen(search: Search, prediction: Prediction) -> dict[int, float]:
 
 def describe_better_unseen(prediction: Prediction, number: int, left: float) -> str:
     """In words, that a model does better than the chosen one on unseen data, and not on held-out
-    blocks."""
+    blocks, or that it has more numbers."""
+    chosen = prediction.choice.chosen
+    other, known = (join_names(prediction.models[n].names) for n in (number, chosen))
+    held_out = f"predicts held-out blocks less well than {known}, but"
+    if prediction.total(number) <= prediction.total(chosen):
+        held_out = f"has more fitted numbers than {known}, and"
     return (
-        f"{join_names(prediction.models[number].names)} predicts held-out blocks less well than"
-        f" {join_names(prediction.chosen.names)}, but leaves {left:.2g} times its error in whole"
-        " unseen runs: these data do not decide between them"
+        f"{other} {held_out} leaves {left:.2g} times its error in whole unseen runs: these data do"
+        " not decide between them"
     )
 
 

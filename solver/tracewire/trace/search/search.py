@@ -145,6 +145,15 @@ class Search:
             return trial
         return whole if whole.reduced_chi2 < self.options.search.far else trial
 
+    def finish(self, trial: Trial) -> Trial:
+        """A trial whose fit has converged, where it does so in another run of steps."""
+        if trial.converged:
+            return trial
+        try:
+            return self.problem.refit(trial, trial.windows.segments, trial.length)
+        except FitError:
+            return trial
+
     def tighten(self) -> None:
         """Let the solver have a tenth of its tolerance from now on."""
         self.problem = tighter(self.problem)
@@ -197,7 +206,7 @@ class Search:
             if found is None:
                 break
             before = best.reduced_chi2
-            self.best = best = self.lengthen_windows(self.refit_on_all(found))
+            self.best = best = self.lengthen_windows(self.refit_on_all(self.finish(found)))
             if best.reduced_chi2 > max(options.far, before / options.nearer):
                 break  # the noise is out of reach: models are compared otherwise
 

@@ -34,20 +34,22 @@ def judge_on_gate(
 ) -> GateResult:
     """Whether a trial does better than another on windows that no fit saw.
 
-    Its squared error must be 2 % smaller there (a third, where it stays far above the noise, where
-    everything is significant), and either the paired z over windows exceeds 2, or
-    more than three of four windows improve; where BIC has fallen by more than 100, z above 1 is
-    enough, or that hardly any window does worse. `bic_reduction` is that fall of BIC. Of a trial at
-    the noise, few windows in which both models lose their track say nothing and do not count.
+    Its squared error must be 2 % smaller there (and by a third of what is above the noise, where it
+    stays far above that where it was fitted: there everything is significant), and either the
+    paired z over windows exceeds 2, or more than three of four windows improve; where BIC has
+    fallen by more than 100, z above 1 is enough, or that hardly any window does worse.
+    `bic_reduction` is that fall of BIC. Of a trial at the noise, few windows in which both models
+    lose their track say nothing and do not count.
     """
     options = problem.options.trial
     at_noise = trial.reduced_chi2 <= options.gate_noise
     old, new = problem.residuals_on(now, windows), problem.residuals_on(trial, windows)
     before = np.array([float(np.sum(r**2)) for r in old])
     after = np.array([float(np.sum(r**2)) for r in new])
-    astray = np.minimum(before, after) > options.gate_astray * np.array([r.size for r in new])
+    noise = np.array([float(r.size) for r in new])
+    astray = np.minimum(before, after) > options.gate_astray * noise
     if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
-        before, after = before[~astray], after[~astray]
+        before, after, noise = before[~astray], after[~astray], noise[~astray]
     if not before.sum() > 0:
         return GateResult(False, 0.0, 0.0, "gate: nothing to improve")
     drop = float(1 - after.sum() / before.sum())
@@ -60,7 +62,10 @@ def judge_on_gate(
     supported = z > options.gate_errors or improved > options.gate_improved
     if bic_reduction > options.gate_decisive:
         supported |= z > options.gate_few_errors or lost < options.gate_harm * gained
-    passed = drop > (options.gate_drop if at_noise else options.gate_material) and bool(supported)
+    least = options.gate_drop
+    if not at_noise:
+        least = max(least, options.gate_material * float(1 - noise.sum() / before.sum()))
+    passed = drop > least and bool(supported)
     size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
     return GateResult(passed, drop, float(z), words + (", passed" if passed else ", refused"))

@@ -415,7 +415,7 @@ class TraceProblem:
         values = {**fixed, **{u.name: u.value for u in unknowns}}
         lasting = tuple(state for effect in effects for state in effect.candidate.lasting)
         ahead = [with_lead_in(model, segment, values) for segment in segments]
-        segments = with_memory(model, ahead, lasting)
+        segments = with_memory(model, ahead, lasting, values)
         longest = max(segment.time_in_samples for segment in segments)
         options = self.options.trial
         return Criterion(
