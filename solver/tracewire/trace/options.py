@@ -141,6 +141,9 @@ class TraceOptions:
     at_noise: float = 1.3
     """The reduced chi-square below which a residual is at the sensor's noise: there the noise is
     white, likelihood is right, and BIC chooses."""
+    few_samples: float = 0.01
+    """The part of a series' samples, at most, in which half of its squared residual stands, to be
+    told as samples that may be wrong."""
     settles: float = 9.0
     """How many times as large as in the rest, which is at the noise, the mean squared residual at
     the begin or the end of a record is at least, for the note that this part may be left out."""

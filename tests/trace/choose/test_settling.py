@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tracewire.trace.choose.settling import describe_settling, quiet_from
+from tracewire.trace.choose.settling import describe_few_samples, describe_settling, quiet_from
 from tracewire.trace.options import TraceOptions
 
 OPTIONS = TraceOptions()
@@ -63,3 +63,17 @@ def test_elsewhere_nothing_is_said(residual: Any) -> None:
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_too_few_samples_say_nothing(count: int) -> None:
     assert quiet_from(np.full(count, 50.0), OPTIONS) == 0
+
+
+def test_few_samples_that_hold_half_of_the_residual_are_named() -> None:
+    residual = NOISE.copy()
+    residual[[120, 280]] = 40.0
+    (words,) = describe_few_samples(trial_of(residual), OPTIONS)
+    assert words.startswith(
+        "half of the squared residual of 'run' stands in 2 of 400 samples, at t = 12, 28 s: look"
+    )
+
+
+@pytest.mark.parametrize("residual", [NOISE, 3 * NOISE, disturbed(200, 240)])
+def test_many_samples_are_not(residual: Any) -> None:
+    assert not list(describe_few_samples(trial_of(residual), OPTIONS))

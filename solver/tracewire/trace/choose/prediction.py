@@ -145,6 +145,10 @@ def predict(search: Search, declared_fit: Trial) -> Prediction:
     options, data_split = search.options, search.data_split
     if not search.has_revisits:  # what adds to an effect along one way is not to be told from it
         options = replace(options, effects=1)
+        search.words.append(
+            "one effect was looked for, as no body comes back to where it was: what adds to an"
+            " effect along one way is not to be told from it"
+        )
     gate = [section for section in data_split.gate if section.measured.use == "gate"]
     declared_model = search.problem.declared
     horizons = horizons_of(

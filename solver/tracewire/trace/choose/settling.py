@@ -1,4 +1,4 @@
-"""Records whose residual is at the noise but for their begin or their end."""
+"""Records whose residual is at the noise but for their begin, their end, or few samples."""
 
 from __future__ import annotations
 
@@ -36,6 +36,22 @@ def describe_settling(trial: Trial, options: TraceOptions) -> Iterator[str]:
                 f"'{name}' is at the noise until {t[end - 1]:.4g} s, and {off:.2g} σ off after "
                 f"that. If something disturbs it there, leave it out by `to:`{IN_THE_FILE}"
             )
+
+
+def describe_few_samples(trial: Trial, options: TraceOptions) -> Iterator[str]:
+    """In words, for each series of whose squared residual half or more stands in few samples: a
+    sample that is wrong is another answer than a missing effect."""
+    for name, (t, squares) in _by_series(trial).items():
+        order = np.argsort(-squares, kind="stable")
+        count = int(np.searchsorted(np.cumsum(squares[order]), squares.sum() / 2)) + 1
+        if count > max(options.few_samples * len(t), 1) or squares.mean() <= options.at_noise:
+            continue
+        times = ", ".join(f"{time:.4g}" for time in np.sort(t[order[:count]])[: options.told])
+        yield (
+            f"half of the squared residual of '{name}' stands in {count} of {len(t)} samples, at"
+            f" t = {times} s{' and more' * (count > options.told)}: look there, and leave out what"
+            " is wrong, as by `outliers` in `clean:` of the series"
+        )
 
 
 def quiet_from(squares: Vector, options: TraceOptions) -> int:

@@ -18,7 +18,7 @@ from tracewire.trace.choose.remainder import (
     held_out_errors,
     remainders,
 )
-from tracewire.trace.choose.settling import describe_settling
+from tracewire.trace.choose.settling import describe_few_samples, describe_settling
 from tracewire.trace.choose.unseen import (
     better_unseen,
     describe_better_unseen,
@@ -185,6 +185,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
         dependences, missing = maps[0]
         if missed:
             search.words.extend(describe_settling(declared[0], options))
+        if above:
+            search.words.extend(describe_few_samples(declared[-1], options))
         if above and not missed:
             search.words.append(
                 f"the residual is {declared[-1].reduced_chi2 ** 0.5:.2g} σ, and no effect"
