@@ -1,4 +1,5 @@
-"""Records of boards on a desk: two heaters side by side and a filter behind a converter."""
+"""Records of boards on a desk: two heaters side by side, a filter behind a converter, and a hot
+plate."""
 
 from __future__ import annotations
 
@@ -85,3 +86,35 @@ def converter_run(random: np.random.Generator, run: int, size: float) -> list[An
     read = y[:, 0] / C + correlated(random, samples, interval, 3e-4, 0.0015)
     read = read + random.normal(size=samples) * 0.002
     return [[run] * samples, np.arange(samples) * interval * 1e3, told, rounded(read, 0.0024)]
+
+
+def plate() -> Record:
+    """A hot plate that is switched, two runs; hidden: a slab of steel on it, behind a thin gap."""
+    random = np.random.default_rng(10505)
+    columns: list[list[Any]] = [[] for _ in range(4)]
+    for run in (1, 2):
+        append(columns, plate_run(random, run))
+    return Record(("run", "t_s", "power_pct", "T_C"), ("%d", "%.0f", "%.0f", "%.2f"), columns)
+
+
+def plate_run(random: np.random.Generator, run: int) -> list[Any]:
+    """The columns of 50 min at 2 s; a hot plate loses a little more, a sensor of 0.25 K."""
+    C, slab, h, gap, full, glows, room = 310.0, 520.0, 1.15, 2.4, 2.1, 4e-4, 21.6
+    interval, samples = 2.0, 1500
+    levels = random.uniform(0, 100, 8 if run == 1 else 6)
+    powers = np.round(np.repeat(levels, math.ceil(samples / len(levels)))[:samples])
+    heat = 0.0
+
+    def switch(sample: int, y: State) -> None:
+        nonlocal heat
+        heat = full * float(powers[min(sample, samples - 1)])
+
+    def field(t: float, y: State) -> list[float]:
+        p, q = y
+        passed = gap * (p - q)
+        return [(heat - h * p - glows * p * p - passed) / C, passed / slab]
+
+    y = march(field, [0.0, 0.0] if run == 1 else [31.0, 24.0], interval, samples, 6, switch)
+    noise = correlated(random, samples, interval, 15.0, 0.05) + random.normal(size=samples) * 0.1
+    shown = rounded(room + y[:, 0] + noise, 0.25)
+    return [[run] * samples, np.arange(samples) * interval, powers, shown]

@@ -46,6 +46,8 @@
   resistors are unequal.
 - r103_arm: nothing. A cable pulls at the arm and the brushes brake one way more, below the noise.
 - r104_four: nothing. One pump bends and a hose drips, below the noise.
+- r105_plate: a slab of steel on the plate takes heat and gives it back, with 217 s. A drift of the
+  loss follows it in one run, and not in the other. A hot plate loses more.
 """
 
 from __future__ import annotations
@@ -183,5 +185,12 @@ NINETIES: Mapping[str, Truth] = {
         "Four tanks",
         words="nothing is hidden; a pump that bends and a hose that drips below the noise besides",
         clean=True,
+    ),
+    "r105_plate": Truth(
+        "Hot plate under a slab",
+        hidden=("viscous_load @ flows",),
+        sizes={"viscous_load.c": 2.4, "viscous_load.lag": 520 / 2.4},
+        words="behind a thin gap; a hot plate that loses 1.6 % more at 45 K besides",
+        besides=("quad_drag @ flows", "cubic_damping @ flows"),
     ),
 }

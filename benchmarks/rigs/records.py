@@ -148,6 +148,7 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r102_converter": boards.converter,
     "r103_arm": hanging.arm,
     "r104_four": waters.four,
+    "r105_plate": boards.plate,
 }
 
 

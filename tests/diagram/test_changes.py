@@ -16,6 +16,7 @@ from tracewire.diagram import (
     AddSensorTerm,
     Change,
     Diagram,
+    FreeStarts,
     PointsFile,
     SetValues,
     Value,
@@ -61,7 +62,8 @@ subsystems:
 events:
   - {when: u - x, set: {v: -0.5*v}}
 measured:
-  run_1: {file: run_1.csv, time: t, signals: {x: {column: x, unit: mm}, v: v}}
+  run_1:
+    {file: run_1.csv, time: t, signals: {x: {column: x, unit: mm}, v: v}, start: {x: free}}
   run_2: {file: run_2.csv, time: t, signals: {x: x}, parameters: {m: 3}}
 """
 OF = ("x", "v", "u", "pull", "a.y", "t", "r", "total", "nowhere")
@@ -154,9 +156,10 @@ def test_objects_and_text_say_the_same(
 ) -> None:
     diagram = made()
     changes: Sequence[Change]
-    for changes in ([one], [term], [values], [other], [term, values, other]):
+    free = FreeStarts(("v",))
+    for changes in ([one], [term], [values], [other], [free], [term, values, other]):
         assert done(apply, diagram, changes) == done(patch, diagram, changes)
-    both = [one, two, term, values, other]
+    both = [one, two, term, values, other, free]
     assert done(apply, diagram, both) == done(patch, diagram, both)
 
 
@@ -260,3 +263,10 @@ subsystems:
     with pytest.raises(OptionError, match=told):
         apply(diagram, [SetValues({path: 3.0})])
     assert patch(diagram, [SetValues({path: 3.0})]).text != text
+
+
+def test_what_a_block_remembers_begins_free_where_a_start_is_free(diagram: Diagram) -> None:
+    new = patch(diagram, [FreeStarts(("v",))])
+    assert "start: {x: free, v: free}}\n" in new.text
+    assert new.measured["run_1"].start == {"x": None, "v": None}
+    assert not new.measured["run_2"].start

@@ -118,6 +118,8 @@ def _edit(found: Found, model: Model, own: Diagram, targets: Targets, *, quiet: 
     def edited() -> Diagram:
         chosen = [str(effect) for effect in found.effects] if targets.approximation else None
         new = empirical or found.apply(effects=chosen)
+        if model.diagram.measured == own.measured:  # no files took the place of the own series
+            return new
         return with_series_of(new, own, Path(output) if output else None)
 
     change = "" if quiet else patch_of(own, edited())

@@ -1,5 +1,15 @@
 from .builder import DiagramBuilder, Signal, SubsystemBuilder
-from .changes import AddBlock, AddOwn, AddSensorTerm, Change, PointsFile, SetValues, apply, patch
+from .changes import (
+    AddBlock,
+    AddOwn,
+    AddSensorTerm,
+    Change,
+    FreeStarts,
+    PointsFile,
+    SetValues,
+    apply,
+    patch,
+)
 from .completion import Proposal, complete, word_before
 from .diagram import (
     Array,
@@ -75,6 +85,7 @@ __all__ = [
     "EffectType",
     "Event",
     "Format",
+    "FreeStarts",
     "Hold",
     "InputPort",
     "Points",

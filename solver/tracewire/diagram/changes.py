@@ -19,7 +19,7 @@ from tracewire.diagram.body import Body
 from tracewire.diagram.channels import unit_of_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.edit import add_addend, many_port, with_addend, with_bodies
-from tracewire.diagram.edit_own import add_own, declared_parameter
+from tracewire.diagram.edit_own import add_own, declared_parameter, free_starts, having_free_starts
 from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
 from tracewire.diagram.edit_values import apply_values, patch_values
 from tracewire.diagram.names import find_signal, split_index
@@ -88,6 +88,14 @@ class AddOwn:
 
 
 @dataclass(frozen=True)
+class FreeStarts:
+    """States that begin free in each measured series that has a free start: what a new block
+    remembers where a record begins. None may be there yet."""
+
+    states: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class SetValues:
     """Other values, in SI, by the names that a fit has for them: of parameters (`k`, `drag.c`), of
     sensors (`offset.theta`, where a series leaves it free), of one series (`phase@run_1`)."""
@@ -95,7 +103,7 @@ class SetValues:
     values: Mapping[str, float]
 
 
-Change = AddBlock | AddSensorTerm | AddOwn | SetValues
+Change = AddBlock | AddSensorTerm | AddOwn | FreeStarts | SetValues
 
 
 def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
@@ -117,6 +125,8 @@ def patch(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
                 diagram = add_sensor(diagram, signal, kind, value, fit)
             case AddOwn(values, fit):
                 diagram = add_own(diagram, values, fit)
+            case FreeStarts(states):
+                diagram = free_starts(diagram, states)
             case SetValues(values):
                 diagram = patch_values(diagram, values)
     return diagram
@@ -138,6 +148,8 @@ def apply(diagram: Diagram, changes: Sequence[Change]) -> Diagram:
                 diagram = _with_sensor_term(diagram, change)
             case AddOwn():
                 diagram = _with_own(diagram, change)
+            case FreeStarts(states):
+                diagram = _with_free_starts(diagram, states)
             case SetValues(values):
                 diagram = apply_values(diagram, values)
     return diagram
@@ -333,4 +345,12 @@ def _with_own(diagram: Diagram, change: AddOwn) -> Diagram:
             written = Value(Number(number), fit=fit, named=fit is not None)
             parameters[path] = in_unit_of(written, declared)
         measured[name] = replace(measured[name], parameters=parameters)
+    return replace(diagram, measured=measured)
+
+
+def _with_free_starts(diagram: Diagram, states: Sequence[str]) -> Diagram:
+    measured = dict(diagram.measured)
+    for series in having_free_starts(diagram):
+        start = {**series.start, **dict.fromkeys(states)}
+        measured[series.name] = replace(series, start=start)
     return replace(diagram, measured=measured)

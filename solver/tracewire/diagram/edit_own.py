@@ -1,10 +1,10 @@
-"""Edits of what measured series have of their own: values of parameters in one series."""
+"""Edits of what measured series have of their own: values of parameters, and free starts."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from tracewire.diagram.diagram import Diagram, Value
+from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_parameter, parameters
 from tracewire.diagram.override import with_parts
 from tracewire.diagram.rewrite import as_written, bounds, reread
@@ -26,31 +26,48 @@ def add_own(
     six digits, and those in `fit` with their bounds in SI; none may have a value there yet. Raises
     OptionError: a series does not exist.
     """
-    changes = []
-    parts: dict[tuple[str, ...], str] = {}
-    source_map = SourceMap(diagram)
-    root = source_map.root
+    texts = {}
     for series, own in values.items():
         if series not in diagram.measured:
             raise OptionError([unknown("measured series", series, diagram.measured)])
-        node = root
+        texts[series] = {
+            path: _text(value, declared_parameter(diagram, path).factor, (fit or {}).get(path))
+            for path, value in own.items()
+        }
+    return _add(diagram, "parameters", texts)
+
+
+def free_starts(diagram: Diagram, states: Sequence[str]) -> Diagram:
+    """The diagram with states that begin free in each measured series that has a free start."""
+    having = having_free_starts(diagram)
+    return _add(diagram, "start", {s.name: dict.fromkeys(states, "free") for s in having})
+
+
+def having_free_starts(diagram: Diagram) -> list[Series]:
+    """The measured series with a state whose start is free."""
+    return [one for one in diagram.measured.values() if None in one.start.values()]
+
+
+def _add(diagram: Diagram, section: str, texts: Mapping[str, Mapping[str, str]]) -> Diagram:
+    """The diagram with entries in a section of single series: series -> key -> text."""
+    changes = []
+    parts: dict[tuple[str, ...], str] = {}
+    source_map = SourceMap(diagram)
+    for series, own in texts.items():
+        node = source_map.root
         for key in ("measured", series):
             inner = node.values[key]
             assert isinstance(inner, Entries)
             node = inner
-        texts = {
-            path: _text(value, declared_parameter(diagram, path).factor, (fit or {}).get(path))
-            for path, value in own.items()
-        }
-        given = node.values.get("parameters")
+        given = node.values.get(section)
         parts_of_series: tuple[Node, ...] = (node, *node.keys.values())
         if not all(map(source_map.is_own, parts_of_series)):
-            parts |= {("measured", series, "parameters", p): text for p, text in texts.items()}
+            parts |= {("measured", series, section, key): text for key, text in own.items()}
         elif isinstance(given, Entries) and given.keys:
-            changes += [entry_last(diagram.text, given, path, n) for path, n in texts.items()]
+            changes += [entry_last(diagram.text, given, key, text) for key, text in own.items()]
         else:
-            text = ", ".join(f"{path}: {number}" for path, number in texts.items())
-            changes.append(entry_last(diagram.text, node, "parameters", f"{{{text}}}"))
+            text = ", ".join(f"{key}: {number}" for key, number in own.items())
+            changes.append(entry_last(diagram.text, node, section, f"{{{text}}}"))
     return with_parts(reread(diagram, changes), parts)
 
 

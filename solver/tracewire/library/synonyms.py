@@ -286,6 +286,7 @@ NAMES: dict[str, dict[Tool, str]] = {
     },
     "viscous": {"Modelica": "Damper", "": "damper, viscous friction, damping"},
     "stiffness": {"Modelica": "Spring", "": "spring"},
+    "viscous_load": {"": "Lanchester damper, viscous absorber, second heat capacity, thermal mass"},
     "xor": {"Modelica": "Xor", "": "exclusive or, XOR gate"},
     "zero_order_hold": {
         "Modelica": "Sampler, ZeroOrderHold",

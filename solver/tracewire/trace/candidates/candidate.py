@@ -20,9 +20,9 @@ class Candidate:
     values of the other unknowns that are tried first, by parameter, in SI. scale: a coefficient
     that matters: where the effect is as large as the sum at its place (at a drive: as the drive, at
     a sensor: as the signal). at: the coefficient at which a screen takes the output where that is
-    not linear; it is each of `at_sizes` in turn. neutral: the coefficient at which the effect
-    vanishes, 1 for the gain of a sensor. of: the place of the other body that it reads, or the
-    drive, where there are several.
+    not linear, the first of `at_sizes`, from each of which a refit of it alone begins. neutral: the
+    coefficient at which the effect vanishes, 1 for the gain of a sensor. of: the place of the other
+    body that it reads, or the drive, where there are several.
     """
 
     effect: str

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 
-from tracewire.diagram import AddBlock, AddOwn, AddSensorTerm, Change, Diagram, Value
+from tracewire.diagram import AddBlock, AddOwn, AddSensorTerm, Change, Diagram, FreeStarts, Value
 from tracewire.formula import Number
 from tracewire.trace.candidates.candidate import Candidate, is_default
 from tracewire.trace.candidates.inside import local_name
@@ -61,6 +61,8 @@ def _changes(
     if known:
         fit = {f"{candidate.block}.{name}": candidate.limits[name] for name in candidate.each}
         yield AddOwn(known, fit)
+    if candidate.lasting:
+        yield FreeStarts(candidate.lasting)
 
 
 def _own(candidate: Candidate, values: Mapping[str, float]) -> dict[str, dict[str, float]]:

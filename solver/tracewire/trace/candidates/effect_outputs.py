@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -39,8 +39,7 @@ class Variant:
 
 
 def variants_of(candidate: Candidate, most: int) -> list[Variant]:
-    """The choices of shapes that are tried first: all, or `most` by thinning the longest grids;
-    each at every size at which the candidate is taken."""
+    """The choices of shapes that are tried first: all, or `most` by thinning the longest grids."""
     counts = {name: len(grid) for name, grid in candidate.shapes.items()}
     while math.prod(counts.values()) > most:
         longest = max(counts, key=counts.__getitem__)
@@ -50,9 +49,8 @@ def variants_of(candidate: Candidate, most: int) -> list[Variant]:
         [grid[number] for number in np.linspace(0, len(grid) - 1, counts[name]).round().astype(int)]
         for name, grid in candidate.shapes.items()
     )
-    choices = [tuple(zip(counts, chosen, strict=True)) for chosen in itertools.product(*grids)]
-    sizes = candidate.at_sizes or (candidate.at,)
-    return [Variant(replace(candidate, at=at), shapes) for at in sizes for shapes in choices]
+    choices = itertools.product(*grids)
+    return [Variant(candidate, tuple(zip(counts, chosen, strict=True))) for chosen in choices]
 
 
 def effect_outputs(

@@ -126,6 +126,8 @@ class ModelPool:
             target = options.hopeful * min((trial.rss for trial in first_fits), default=np.inf)
             first = [row.placed_effect for row in proposal.rows]
             trial = self._refit(now, first, (), options.first_steps, target, proposal.values)
+            if not parent.names and len(first) == 1:
+                trial = self._from_other_sizes(now, first[0], trial)
             if moved and (trial is None or trial.rss > target):
                 again = self._refit(now, first, (), options.first_steps, target, moved)
                 trial = min((t for t in (trial, again) if t), key=lambda t: t.rss, default=None)
@@ -136,6 +138,19 @@ class ModelPool:
             fitted = self.fit(parent, new, first_fit=(number, trial))
             if fitted is not None:
                 self._keep(fitted)
+
+    def _from_other_sizes(
+        self, now: Trial, effect: PlacedEffect, trial: Trial | None
+    ) -> Trial | None:
+        """The refit of an effect alone, or a better one from another size of its coefficient: a lag
+        of a minute is not reached from one of two samples."""
+        found = [trial] if trial else []
+        for size in effect.candidate.at_sizes[1:]:
+            target = min((one.rss for one in found), default=np.inf)
+            begun = effect.with_value(effect.candidate.parameter, size)
+            other = self._refit(now, [begun], (), self.options.first_steps, target)
+            found += [other] if other else []
+        return min(found, key=lambda one: one.rss, default=None)
 
     def _moved_values(self, now: Trial) -> dict[str, float]:
         """The declared values of the fitted parameters, where a fit has moved one of them far."""
