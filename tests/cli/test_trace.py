@@ -19,6 +19,8 @@ from tracewire.diagram import read
 from tracewire.errors import OptionError
 from tracewire.trace import TraceOptions
 
+from benchmarks.rigs.records import generate
+
 DIAGRAM = """\
 title: Short swing   # to be traced
 span: [0, 6]
@@ -282,3 +284,17 @@ def test_files_named_beside_the_diagram(
     told = call("trace", "swing.yaml", "--validate", "a.csv")
     assert told.code == 2
     assert "none of them to train on" in told.err
+
+
+def test_what_an_effect_remembers_begins_free_in_the_diagram_that_is_written(
+    call: Any, tmp_path: Path
+) -> None:
+    """Its state was free in the trace, and began at 0 in the diagram that the trace wrote: a slab
+    on a plate that is warm where the second record begins."""
+    file = generate("r105_plate", tmp_path)
+    told = call("trace", file, "--apply")
+    assert told.out.startswith("VERDICT effect: viscous_load @ flows is missing\n")
+    diagram = read(file)
+    starts = {name: dict(series.start) for name, series in diagram.measured.items()}
+    free = {"rise": None, "viscous_load.slip": None}
+    assert starts == {"from_cold": free, "from_warm": free}

@@ -1,7 +1,9 @@
-"""Refits begin again at the declared values where the declared fit has moved far from them."""
+"""Refits begin again: at the declared values where the declared fit has moved far from them, and of
+a lag at other sizes."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -25,6 +27,22 @@ def trial(rss: float, **values: float) -> Any:
     return SimpleNamespace(rss=rss, values=values)
 
 
+@dataclass
+class Effect:
+    """An effect whose refits begin at some sizes of its coefficient."""
+
+    size: float = 1.0
+    sizes: tuple[float, ...] = (1.0,)
+
+    @property
+    def candidate(self) -> Any:
+        return SimpleNamespace(parameter="tau", at_sizes=self.sizes)
+
+    def with_value(self, name: str, value: float) -> Effect:
+        assert name == "tau"
+        return Effect(value, self.sizes)
+
+
 class Pool(ModelPool):
     """A pool whose declared fit is given, and what each refit leaves, one after the other."""
 
@@ -35,6 +53,7 @@ class Pool(ModelPool):
         super().__init__(search, none, TraceOptions())
         self.now, self.left = now, iter(left)
         self.begun: list[float] = []
+        self.sizes: list[float] = []
         self.first_fits: list[float] = []
 
     def on_sparse_windows(self, parent: Any, number: int) -> Any:
@@ -50,7 +69,8 @@ class Pool(ModelPool):
         values: Any = None,
         segments: Any = None,
     ) -> Any:
-        self.begun.append({**now.values, **values}["c"])
+        self.begun.append({**now.values, **(values or {})}["c"])
+        self.sizes.append(added[0].size)
         return trial(next(self.left))
 
     def _select_first_fits(self, now: Any, first_fits: Any, number: int) -> Any:
@@ -58,8 +78,9 @@ class Pool(ModelPool):
         return []
 
 
-def proposal(name: str) -> Any:
-    return SimpleNamespace(names=[name], rows=[SimpleNamespace(placed_effect=name)], values={})
+def proposal(name: str, *sizes: float) -> Any:
+    row = SimpleNamespace(placed_effect=Effect(sizes=sizes or (1.0,)))
+    return SimpleNamespace(names=[name], rows=[row], values={})
 
 
 @pytest.mark.parametrize(
@@ -74,3 +95,18 @@ def test_an_effect_that_is_not_hopeful_begins_again_at_declared_values(
     pool.extend(declared, 0, [proposal("first"), proposal("second")])
     assert pool.begun == begun
     assert pool.first_fits == left
+
+
+def test_a_lag_begins_at_each_of_its_sizes_and_the_best_fit_is_kept() -> None:
+    pool = Pool(trial(9.0, k=31.0, c=11.0), [3.0, 1.0, 2.0])
+    declared: Any = SimpleNamespace(names=frozenset(), dropped=())
+    pool.extend(declared, 0, [proposal("lag", 1.0, 20.0, 60.0)])
+    assert pool.sizes == [1.0, 20.0, 60.0]
+    assert pool.first_fits == [1.0]
+
+
+def test_beside_other_effects_it_begins_where_it_promises_to_be() -> None:
+    pool = Pool(trial(9.0, k=31.0, c=11.0), [3.0])
+    parent: Any = SimpleNamespace(names=frozenset({"rub"}), dropped=())
+    pool.extend(parent, 0, [proposal("lag", 1.0, 20.0, 60.0)])
+    assert pool.sizes == [1.0]
