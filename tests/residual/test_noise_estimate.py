@@ -203,6 +203,8 @@ def test_the_step_of_readings_is_found_where_some_are_missing() -> None:
     assert rounding_step(0.3 + 5e-8 * counts) == pytest.approx(5e-8, rel=1e-3)
     assert rounding_step(white(1.0)) == 0.0
     assert rounding_step(np.arange(4.0)) == 0.0
+    assert rounding_step(0.25 * np.repeat(np.arange(3.0), 17)) == 0.25  # little happens
+    assert rounding_step(np.repeat(np.arange(2.0), 17)) == 0.0  # a switch
 
 
 def test_a_steady_motion_is_not_rounded_to_what_it_moves_by() -> None:

@@ -80,6 +80,10 @@ class ReadingLimits:
     """Standard deviations from the mean of both neighbours: such a sample is an outlier."""
     fewest_steps: Final[int] = 8
     """Gaps between readings that show a step, at least."""
+    few_steps: Final[int] = 2
+    """The same where each reading comes many times, as in a part in which little happens."""
+    times_each: Final[int] = 10
+    """How often each reading comes then, in the mean."""
     most_parts: Final[int] = 8
     """Steps of the least gap, at most."""
     coarse: Final[float] = 1e3

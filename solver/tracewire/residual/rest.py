@@ -46,18 +46,16 @@ def states_along_inputs(
     """The states that follow inputs alone at the time t in s, if they began where the samples of
     their inputs do as the diagram says.
 
-    With the rate a*x + g of a state, g the part that its inputs set, a line or a constant h between
-    their samples, x(t) is the sum of what is left of x and of each piece of g.
+    With the rate a*x + g of a state, where g is what its inputs set, a line or a constant between
+    their samples, x(t) is what is left of the start and of each piece of g.
     """
     now = {name: float(values_at(u, np.array([t]))[0]) for name, u in inputs.items()}
     found: dict[str, float] = {}
     starts = {state.name: state.start for state in model.flat.states}
     for name, rate, slope in _followers(model, parameters, now):
         read = {one: inputs[one] for one in names_of(rate) if one in inputs}
-        times = np.unique(np.concatenate([u[0] for u in read.values()]))
-        times = np.append(times[times < t], t)
-        forgotten = times < t + WINDOW.forgotten / slope
-        times = times[max(int(forgotten.sum()) - 1, 0) :]
+        since = t + WINDOW.forgotten / slope
+        times = np.unique(np.concatenate([*(_between(u[0], since, t) for u in read.values()), [t]]))
         held = all(isinstance(u, Held) for u in read.values())
         known: dict[str, float | Vector] = {**parameters, name: 0.0}
         known |= {one: values_at(u, times) for one, u in read.items()}
@@ -65,6 +63,12 @@ def states_along_inputs(
         x = evaluate(starts[name], parameters) * np.exp(slope * (t - times[0]))
         found[name] = float(x + _answer(slope, times, force, held))
     return found
+
+
+def _between(times: Vector, since: float, until: float) -> Vector:
+    """The times before `until`, from the last one before `since` on."""
+    first = max(int(np.searchsorted(times, since)) - 1, 0)
+    return times[first : int(np.searchsorted(times, until))]
 
 
 def _answer(slope: float, times: Vector, force: Vector, held: bool) -> float:
