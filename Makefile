@@ -20,7 +20,7 @@ demo: .venv/installed            ## run the demonstration
 	$(BIN)/tracewire demo
 
 test: .venv/installed-test            ## run the tests
-	$(BIN)/python -m pytest --numprocesses auto $(ARGS)
+	$(BIN)/python -m pytest --numprocesses auto --dist worksteal $(ARGS)
 
 check: .venv/installed-test            ## style and types
 	$(BIN)/ruff check

@@ -33,7 +33,7 @@ SHIPPED = [
     if "\nblocks:" in file.read_text(encoding="utf-8")
     and "real" not in file.parts  # these need their records
 ]
-STEPS = 10  # Python takes 10 ms and more for each
+STEPS = 20  # Python takes 10 ms and more for each
 
 
 def by_python(core: int) -> int:
