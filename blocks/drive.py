@@ -44,6 +44,7 @@ drive_lag = Block(
         place="drive",
         at=Shape((2.0, 6.0, 20.0, 60.0, 200.0), of="dt"),
         alias=("sensor_delay", "drive_delay", "viscous"),
+        lasting=("w",),
     ),
 )
 

@@ -93,7 +93,9 @@ def test_a_lag_begins_inside_a_record_where_its_input_has_led_it() -> None:
     assert windows[0].begin == m.t[19], "no run ahead is needed"
     assert float(np.abs(fitted.residuals[0]).max()) < 1e-3
     whole = cut_windows(model, Section(m, 0, 150), 150, ("T",))
-    assert with_memory(model, whole)[0].start == {**whole[0].start, "late.w": 0.0}
+    assert with_memory(model, whole)[0].start == whole[0].start, "the record begins as declared"
+    assert [one.free for one in with_memory(model, whole, ["late.w"])] == [("T", "late.w")]
+    assert [one.free for one in with_memory(model, windows, ["late.w"])] == [("T",)], "it is known"
 
 
 def test_a_window_of_a_file_begins_at_rest_with_its_input(tmp_path: Path) -> None:

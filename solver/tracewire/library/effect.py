@@ -81,7 +81,7 @@ class Effect:
     where a body moves one way. near_rest: the effect is tried only where these signals come near
     zero: elsewhere it stands for any law that falls. lasting: states of the block that a run hardly
     forgets, as those of an oscillation that is little damped: they are free where the run of a
-    window begins.
+    window begins. That of a lag, which an input leads, is so only where a record begins.
     """
 
     coefficient: str

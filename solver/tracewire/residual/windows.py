@@ -121,8 +121,8 @@ def with_memory(
     A lag or a hysteresis begins as its block says, which is wrong inside a record. A lag of an
     input is where the input has led it, with the parameters in `values`. Of what else is
     remembered the run of a window that follows no other begins ahead of it, by twice its length or
-    a tenth of the series. States that are `lasting` are free there: no run ahead would forget where
-    they began.
+    a tenth of the series. Other states that are `lasting` are free there: no run ahead would forget
+    where they began. So is a lag where a record begins, which tells nothing of its input before.
     """
     found: list[Segment] = []
     remembers = any(mode.kind == "memory" for mode in model.modes)
@@ -131,12 +131,12 @@ def with_memory(
         if not segment.free or follows:
             found.append(segment)
             continue
-        if lasting:
-            start = {**dict.fromkeys(lasting, 0.0), **segment.start}
-            free = tuple(dict.fromkeys((*segment.free, *lasting)))
-            segment = replace(segment, start=start, free=free)
         t, row = segment.measured.t, int(segment.rows[0]) - 1
         led = _led_by_inputs(model, segment, values or {})
+        if unknown := [state for state in lasting if state not in led]:
+            start = {**dict.fromkeys(unknown, 0.0), **segment.start}
+            free = tuple(dict.fromkeys((*segment.free, *unknown)))
+            segment = replace(segment, start=start, free=free)
         known = set(model.states) <= {*segment.free, *led} and not remembers
         if led and row < 0:
             segment = replace(segment, start={**led, **segment.start})
@@ -155,7 +155,8 @@ def _led_by_inputs(model: Model, segment: Segment, values: Mapping[str, float]) 
     measured, own = segment.measured, model.flat.parameters
     given = {name: value for name, value in values.items() if name in own}
     known = parameter_values(model, {**given, **measured.parameters}, measured.preset)
-    led = states_along_inputs(model, known, measured.inputs, segment.begin)
+    inputs = {name: u for name, u in measured.inputs.items() if u[0][0] < segment.begin}
+    led = states_along_inputs(model, known, inputs, segment.begin)
     return {name: value for name, value in led.items() if name not in segment.free}
 
 
