@@ -4,23 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import tracewire as tw
+from oracles.motor import MOTOR
 from tracewire.residual import Measured
 from tracewire.trace import trace
 
-MOTOR = """
-span: [0, 5]
-record: [angle]
-inputs: {voltage: {unit: V}}
-parameters:
-  c: {value: 2, unit: 1/s, fit: [0, 100]}
-  K: {value: 50, unit: rad/(s^2 V), fit: [0, 1000]}
-blocks:
-  angle: {type: integrator, of: rate, unit: rad}
-  rate: {type: integrator, of: acceleration, unit: rad/s}
-  motor: {type: gain, of: voltage, k: K}
-  friction: {type: viscous, rate: rate, c: c}
-  acceleration: {type: sum, of: [motor, friction], unit: rad/s^2}
-"""
 HIDDEN = (
     MOTOR.replace("friction]", "friction, rub]")
     + """\

@@ -97,17 +97,17 @@ def _is_far(row: int, others: Sequence[int], least: float) -> bool:
     return all(abs(row - other) >= least for other in others)
 
 
-def with_lead_in(model: Model, segment: Segment, delays: Mapping[str, float]) -> Segment:
-    """A window whose run begins so early that its first samples are seen through delays in s, by
-    the name of the sensor's unknown; where its start is not free, as it is."""
+def with_lead_in(model: Model, segment: Segment, values: Mapping[str, float]) -> Segment:
+    """A window whose run begins so early that its first samples are seen through the delays of
+    sensors, with the unknowns in `values`; where its start is not free, as it is."""
     measured, first = segment.measured, float(segment.t[0])
     signals = segment.signals
-    delay = max(delays.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
+    delay = max(values.get(f"delay.{name}", measured.sensor(name).delay) for name in signals)
     begin = first - WINDOW.ahead * delay
     if not segment.free or segment.begin <= begin:
         return segment
     row = int(np.searchsorted(measured.t, begin, side="right")) - 1
-    return replace(segment, begin=begin) if row < 0 else _begun_at(model, segment, row)
+    return replace(segment, begin=begin) if row < 0 else _begun_at(model, segment, row, values)
 
 
 def with_memory(
@@ -160,15 +160,13 @@ def _led_by_inputs(model: Model, segment: Segment, values: Mapping[str, float]) 
     return {name: value for name, value in led.items() if name not in segment.free}
 
 
-def _begun_at(
-    model: Model, segment: Segment, row: int, values: Mapping[str, float] | None = None
-) -> Segment:
+def _begun_at(model: Model, segment: Segment, row: int, values: Mapping[str, float]) -> Segment:
     """A window whose run begins at a row of its series, with the free states that the data tell,
     and those that its inputs have led there."""
     states = start_from_data(model, segment.measured, row)
     start = {name: states[name] for name in segment.free if name in states}
     begun = replace(segment, begin=float(segment.measured.t[row]))
-    led = _led_by_inputs(model, begun, values or {})
+    led = _led_by_inputs(model, begun, values)
     return replace(begun, start={**segment.start, **start, **led})
 
 
