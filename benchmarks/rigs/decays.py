@@ -1,4 +1,4 @@
-"""Records of what is let go and left alone: two pendulums, a flywheel and a model of a ship."""
+"""Records of what is let go and left alone: two pendulums, two wheels and a model of a ship."""
 
 from __future__ import annotations
 
@@ -119,3 +119,36 @@ def rolls(random: np.random.Generator, run: int, heel: float) -> list[Any]:
     smooth = np.convolve(read, np.ones(window) / window, "valid")  # as the software of the tank
     slow = correlated(random, samples, interval, 0.5, 0.02)
     return [[run] * samples, np.arange(samples) * interval, rounded(smooth + slow, 0.01)]
+
+
+def grindstone() -> Record:
+    """A grindstone on its axle that runs out three times; hidden: its heavy side."""
+    random = np.random.default_rng(4106)
+    columns: list[list[Any]] = [[] for _ in range(3)]
+    for run, (first, samples) in enumerate([(7.1, 2400), (-6.2, 2150), (6.7, 2300)], 1):
+        append(columns, heavy_side_runs_out(random, run, first, samples))
+    return Record(("run", "t_s", "angle_deg"), ("%d", "%.2f", "%.1f"), columns, ";")
+
+
+def heavy_side_runs_out(
+    random: np.random.Generator, run: int, first: float, samples: int
+) -> list[Any]:
+    """The columns of one run from `first` rad/s on; 720 counts on a turn, a disc of the encoder
+    that does not sit straight, and a strap that touches the rim over a part of a turn."""
+    heavy, spot, bearing, oil, strap, interval = 0.42, 0.8, 0.11, 0.042, 0.015, 0.02
+    lines, askew = 720, 0.003
+
+    def field(t: float, y: State) -> list[float]:
+        return [y[1], -oil * y[1] - heavy * math.sin(y[0] - spot)]
+
+    def levels(t: float, y: State) -> tuple[float, float]:
+        now = bearing + strap * max(math.sin(y[0] + 1.1), 0.0)
+        return now, now
+
+    y = march_dry(field, levels, 1, [random.uniform(0, 6), first], interval, samples, 10)
+    seen = y[:, 0] + askew * np.sin(y[:, 0] - 2.0)
+    return [
+        [run] * samples,
+        np.arange(samples) * interval,
+        np.floor(seen / (2 * math.pi) * lines) * 360 / lines,
+    ]

@@ -48,10 +48,14 @@
 - r104_four: nothing. One pump bends and a hose drips, below the noise.
 - r105_plate: a slab of steel on the plate takes heat and gives it back, with 217 s. A drift of the
   loss follows it in one run, and not in the other. A hot plate loses more.
+- r106_grindstone: a heavy side pulls once a turn. Speeds of a decay go up and down with it, which
+  no friction does. The rock to and fro at the end shows where it hangs. A strap rubs over half a
+  turn: a friction of the same kind of place, and a small one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from benchmarks.rigs.hidden import Truth
@@ -192,5 +196,13 @@ NINETIES: Mapping[str, Truth] = {
         sizes={"viscous_load.c": 2.4, "viscous_load.lag": 520 / 2.4},
         words="behind a thin gap; a hot plate that loses 1.6 % more at 45 K besides",
         besides=("quad_drag @ flows", "cubic_damping @ flows"),
+    ),
+    "r106_grindstone": Truth(
+        "Grindstone that runs out",
+        hidden=("cogging @ acceleration",),
+        sizes={"cogging.amplitude": 0.42, "cogging.pitch": 2 * math.pi},
+        words="a heavy side; a strap that rubs over half a turn with 4 % of that besides",
+        bounds={("cogging @ acceleration", "pitch"): (6.2, 6.36)},
+        besides=("position_friction @ acceleration", "cogging @ acceleration"),
     ),
 }

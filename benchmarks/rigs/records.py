@@ -149,6 +149,7 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r103_arm": hanging.arm,
     "r104_four": waters.four,
     "r105_plate": boards.plate,
+    "r106_grindstone": decays.grindstone,
 }
 
 

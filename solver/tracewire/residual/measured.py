@@ -93,7 +93,7 @@ class Measured:
         for name, value in given.items():
             object.__setattr__(self, name, value)
 
-    @property
+    @cached_property
     def interval(self) -> float:
         """The time in s from one sample to the next, the median; 0 of a single sample."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.0

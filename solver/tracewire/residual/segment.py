@@ -45,7 +45,7 @@ class Segment:
         inside = t[np.searchsorted(t, self.begin) : self.rows[-1] + 1]
         if len(inside) < 2:
             return len(inside)
-        return max(len(inside), int((inside[-1] - inside[0]) / np.median(np.diff(t))))
+        return max(len(inside), int((inside[-1] - inside[0]) / self.measured.interval))
 
     @property
     def signals(self) -> tuple[str, ...]:

@@ -66,7 +66,8 @@ class CheckOptions:
     again: float = 1.2
     """The way a body goes over the range of its coordinate, from which on it has come back."""
     turns: float = 5.0
-    """Turns of a shaft that does not come back, from which on it has no spring and no stop."""
+    """Turns of a shaft from which on a turn is a period; one that does not come back has no spring
+    and no stop then."""
     swings: float = 2.0
     """Periods in a record of what swings on a body that does not come back, at least: what does not
     swing follows any smooth change of its force."""

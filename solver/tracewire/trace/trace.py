@@ -165,7 +165,7 @@ def set_up_search(
     series = tuple(drop_outliers(m, sigma, options.check) for m in series)
     series = tuple(with_past(model, m, "each window of a trace") for m in series)
     data_split = split_data(series, options.split)
-    shortest = shortest_window(data_split, options.split)
+    shortest = shortest_window(model, data_split, options)
     inputs = InputCovariance(sigma, model, series, shortest)
     problem = TraceProblem(model, series, sigma, rtol, inputs, options)
     places = find_places(model)

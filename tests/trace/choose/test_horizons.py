@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from oracles.oscillator import model_of
+from oracles.oscillator import DIAGRAM, model_of
+from tracewire.compile import compile
+from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section
 from tracewire.trace.choose.horizons import REST, Horizons, dominant_period, horizons_of, restrict
@@ -34,6 +36,17 @@ def test_the_horizons_are_a_third_of_a_period_and_five_periods() -> None:
     short, long = of(sine(period=40)).each
     assert (short.length, long.length) == (12, 200)
     assert len(long.segments) == 20
+
+
+def test_a_turn_is_the_period_of_an_angle_that_goes_round() -> None:
+    model = compile(read_text(DIAGRAM.replace("unit: m}", "unit: rad}")))
+    t = 0.03 * np.arange(4000)
+    angle = 2 * np.pi * (t / 1.2 - 1e-3 * t**2)  # 85 turns in 120 s
+    turning = Measured("run", "train", t, {"x": angle}, start={"x": None, "v": None})
+    short, long = horizons_of(
+        model, [Section(turning, 0, 4000)], [], FREE, {"x": 1e-3}, OPTIONS
+    ).each
+    assert (short.length, long.length) == (14, 233)
 
 
 def test_in_a_record_of_few_periods_long_runs_go_over_several_blocks() -> None:

@@ -7,7 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.oscillator import candidates_of, problem_of, record, search_of
+from oracles.oscillator import DIAGRAM, candidates_of, problem_of, record, search_of
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.residual import Measured
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.options import TraceOptions
@@ -82,17 +85,26 @@ def test_the_list_stays_short_where_everything_stands_out() -> None:
     assert sum(len(names) == 2 for names in found) == OPTIONS.screen.pairs
 
 
+def shortest_of(series: Measured, unit: str = "m") -> int:
+    model = compile(read_text(DIAGRAM.replace("unit: m}", f"unit: {unit}}}")))
+    return shortest_window(model, split_data([series], OPTIONS.split), OPTIONS)
+
+
 def test_the_shortest_window_is_a_fifth_of_a_period() -> None:
-    slow = record(end=12.0)
     t = np.arange(0, 30, 0.03)
-    slow = replace(slow, t=t, values={"x": np.cos(2 * np.pi * t / 6.0)})  # 200 samples a period
-    assert shortest_window(split_data([slow], OPTIONS.split), OPTIONS.split) == pytest.approx(
-        40, abs=6
-    )
+    slow = replace(record(end=12.0), t=t, values={"x": np.cos(2 * np.pi * t / 6.0)})
+    assert shortest_of(slow) == pytest.approx(40, abs=6), "of 200 samples"
     fast = replace(slow, values={"x": np.cos(2 * np.pi * t / 0.3)})
-    assert shortest_window(split_data([fast], OPTIONS.split), OPTIONS.split) == 16, (
-        "never below that"
-    )
+    assert shortest_of(fast) == 16, "never below that"
+
+
+def test_a_turn_is_the_period_of_an_angle_that_goes_round() -> None:
+    t = np.arange(0, 30, 0.03)
+    turning = replace(record(end=12.0), t=t, values={"x": 2 * np.pi * 10 * t / 30})
+    assert shortest_of(turning, "rad") == 20, "of 100 samples a turn"
+    assert shortest_of(turning, "m") > 200, "a way has no turns"
+    slow = replace(turning, values={"x": 2 * np.pi * 4 * t / 30})
+    assert shortest_of(slow, "rad") > 200, "too few turns"
 
 
 def test_windows_grow_threefold_up_to_the_whole_section() -> None:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
@@ -176,6 +175,8 @@ def rate_ratio(t: Vector, values: Vector, rates: Vector, sure: float) -> float |
     By least squares of the values on the integral of the rates, a constant and a straight line: an
     offset of either does not count, and no noise is amplified.
     """
+    from scipy.integrate import cumulative_trapezoid  # slow to import, seldom needed
+
     steps = cumulative_trapezoid(rates, t, initial=0)
     basis = np.column_stack((np.ones_like(t), t - t[0]))
     left, moved = (y - basis @ np.linalg.lstsq(basis, y, rcond=None)[0] for y in (values, steps))

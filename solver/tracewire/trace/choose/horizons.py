@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.residual import Section, Segment, cut_windows, edges_within
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.trials.data_split import samples_in_turn
 
 Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -87,12 +89,10 @@ class Horizon:
         return len(set(np.concatenate(self.blocks).tolist()) - {REST})
 
     def _where(self, blocks: Sequence[int], inside: bool) -> list[tuple[int, Ints]]:
-        found = []
-        for number, of in enumerate(self.blocks):
-            rows = np.flatnonzero(np.isin(of, blocks) == inside)
-            if len(rows):
-                found.append((number, rows))
-        return found
+        chosen = np.isin(np.concatenate(self.blocks), blocks) == inside
+        edges = np.cumsum([len(of) for of in self.blocks])[:-1]
+        rows = map(np.flatnonzero, np.split(chosen, edges))
+        return [(number, some) for number, some in enumerate(rows) if len(some)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ def horizons_of(
     )
     total = sum(section.count for section in sections)
     interval = float(np.median([section.measured.interval for section in sections]))
-    period = float(np.median([dominant_period(section) for section in sections]))
+    period = float(np.median([period_of(model, section, options.check) for section in sections]))
     periodic = bool(np.isfinite(period))
     long = options.horizon / interval if options.horizon else options.long_horizon * period
     most, least = total / options.least_blocks, total / options.most_blocks
@@ -181,6 +181,12 @@ def horizons_of(
         _folds(pieces, options),
         interval,
     )
+
+
+def period_of(model: Model, section: Section, options: CheckOptions) -> float:
+    """The samples of a period: the dominant one, or a turn of an angle that goes round."""
+    turns = [samples_in_turn(model, n, section.measured, options) for n in section.measured.values]
+    return min(dominant_period(section), float(np.median(turns)))
 
 
 def dominant_period(section: Section) -> float:

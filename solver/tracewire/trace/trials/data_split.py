@@ -11,7 +11,8 @@ from tracewire.compile import Model
 from tracewire.data import usual_range
 from tracewire.errors import DataError, Problem
 from tracewire.residual import Measured, Section, Segment, cut_windows
-from tracewire.trace.thresholds import SplitOptions
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.thresholds import CheckOptions, SplitOptions
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,23 +115,33 @@ def split_data(measured: Sequence[Measured], options: SplitOptions) -> DataSplit
     return DataSplit(tuple(train), tuple(gate), tuple(validate), tuple(words))
 
 
-def shortest_window(data_split: DataSplit, options: SplitOptions) -> int:
+def shortest_window(model: Model, data_split: DataSplit, options: TraceOptions) -> int:
     """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
 
     A series without a period, as of a falling body, has no phase that a long run could lose: it is
-    one window.
+    one window. An angle that goes round many times has a turn for its period.
     """
-    lengths = []
+    split, lengths = options.split, list[float]()
     for section in data_split.train:
-        for values in section.measured.values.values():
+        for name, values in section.measured.values.items():
             y = values[section.first : section.end]
             centred = y - np.mean(y)
             crossings = int(np.sum(np.diff(np.signbit(centred))))
-            lengths.append(
-                2 * len(y) / crossings if crossings > 1 else options.in_a_period * len(y)
-            )
-    longest = max(data_split.longest, options.shortest)
-    return int(np.clip(np.median(lengths) / options.in_a_period, options.shortest, longest))
+            period = 2 * len(y) / crossings if crossings > 1 else split.in_a_period * len(y)
+            turn = samples_in_turn(model, name, section.measured, options.check)
+            lengths.append(min(period, turn))
+    longest = max(data_split.longest, split.shortest)
+    return int(np.clip(np.median(lengths) / split.in_a_period, split.shortest, longest))
+
+
+def samples_in_turn(model: Model, signal: str, measured: Measured, options: CheckOptions) -> float:
+    """The samples in which an angle goes once round, the mean over a series; infinite where it does
+    not go round many times."""
+    values = measured.values[signal]
+    turns = float(np.ptp(values)) / (2 * np.pi)
+    if model.flat.units.get(signal) != "rad" or turns < options.turns:
+        return float("inf")
+    return len(values) / turns
 
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
