@@ -195,10 +195,10 @@ def test_a_bad_record_is_told_with_its_line(
     assert told.data["error"][0]["file"]
 
 
-def test_nan_in_a_record_is_told_with_its_line(call: Any, decay: Path) -> None:
+def test_a_value_that_is_not_finite_is_told_with_its_line(call: Any, decay: Path) -> None:
     csv = decay.with_name("run.csv")
     lines = csv.read_text(encoding="utf-8").splitlines()
-    lines[7] = "0.35,NaN"
+    lines[7] = "0.35,inf"
     csv.write_text("\n".join(lines), encoding="utf-8")
     told = call("fit", decay)
     assert told.code == 2

@@ -81,12 +81,25 @@ def test_the_index_of_pandas_is_the_time_where_it_can_be() -> None:
     assert tw.Measured.from_frame(part, {"x": "angle"}).t[0] == pytest.approx(0.55)
 
 
-def test_values_that_pandas_misses_are_told() -> None:
+def test_a_row_that_lacks_a_signal_is_left_out_and_its_input_kept() -> None:
     pandas = pytest.importorskip("pandas")
     column = pandas.array([1, None, *range(39)], dtype="Int64")
-    frame = pandas.DataFrame({"t": T, "x": column})
-    with pytest.raises(DataError, match=r"'x' is not finite in this row \(row 2\)"):
-        tw.Measured.from_frame(frame, "x")
+    frame = pandas.DataFrame({"t": T, "x": column, "u": T**2})
+    found = tw.Measured.from_frame(frame, "x", inputs="u")
+    assert found.t.tolist() == [T[0], *T[2:]]
+    assert found.values["x"].tolist() == [1, *range(39)]
+    assert found.inputs["u"][0].tolist() == T.tolist()
+    assert f"1 of 41 rows have no value of x, and count for no signal; first at t = {T[1]:g} s" in (
+        found.steps
+    )
+
+
+def test_values_of_an_input_that_pandas_misses_are_told() -> None:
+    pandas = pytest.importorskip("pandas")
+    column = pandas.array([1, None, *range(39)], dtype="Int64")
+    frame = pandas.DataFrame({"t": T, "x": T, "u": column})
+    with pytest.raises(DataError, match=r"'u' is not finite in this row \(row 2\)"):
+        tw.Measured.from_frame(frame, "x", inputs="u")
 
 
 def test_rows_that_are_not_in_order_are_one_problem() -> None:

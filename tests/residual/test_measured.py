@@ -127,7 +127,7 @@ def test_a_window_without_samples_is_told_with_what_the_file_covers(file: Path) 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ("0.5,90", "0.5,nan", "run.csv:3: column 'angle' is not finite in this row. Leave out"),
+        ("0.5,90", "0.5,inf", "run.csv:3: column 'angle' is not finite in this row. Leave out"),
         ("0.5,90", "0.5,ninety", "run.csv:3: column 'angle' is 'ninety', which is not a number."),
         ("1.0,180", "0.25,180", "run.csv:4: time goes back to 0.25, from 0.5 in line 3."),
         ("angle", "angel", "unknown column 'angle' in"),

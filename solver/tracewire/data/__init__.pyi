@@ -1,4 +1,4 @@
-from .checks import signal_remarks, time_remarks, usual_range
+from .checks import input_remarks, signal_remarks, time_remarks, usual_range
 from .frame import read_frame
 from .headings import Headings, read_headings
 from .read import Columns, column_unit, read_columns, read_record, record_of
@@ -12,6 +12,7 @@ __all__ = [
     "Option",
     "Record",
     "column_unit",
+    "input_remarks",
     "read_columns",
     "read_frame",
     "read_headings",

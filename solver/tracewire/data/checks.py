@@ -41,6 +41,21 @@ def time_remarks(t: Vector) -> list[str]:
     return remarks
 
 
+def input_remarks(name: str, t: Vector, values: Vector) -> list[str]:
+    """What is odd about an input (N,) at times (N,) in s: a gap in the time, within whose length it
+    moves on either side."""
+    steps, least = np.diff(t), CHECK.moved * float(np.ptp(values))
+    for at in np.flatnonzero(steps > CHECK.gap * float(np.median(steps))).tolist():
+        near = values[(t >= t[at] - steps[at]) & (t <= t[at + 1] + steps[at])]
+        if np.ptp(near) > least:
+            return [
+                f"the input {name} is not known in the gap after {_time(t, at)}, and goes from "
+                f"{near.min():.4g} to {near.max():.4g} around it: a run takes a guess there; where "
+                "only a signal has no value, keep the row and leave its cell blank"
+            ]
+    return []
+
+
 def _time(t: Vector, number: int) -> str:
     """The time of a sample, up to a tenth of the usual step: `t = 4.99 s`."""
     value, step = float(t[number]), float(np.median(np.diff(t)))

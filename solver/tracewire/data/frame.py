@@ -5,7 +5,7 @@ None of these packages is imported: a frame is known by what it can do.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import partial
 from typing import Any
 
@@ -19,7 +19,11 @@ from tracewire.errors import DataError, Location
 
 
 def read_frame(
-    frame: Any, columns: Mapping[str, str], time: str | None = None, name: str = "frame"
+    frame: Any,
+    columns: Mapping[str, str],
+    time: str | None = None,
+    name: str = "frame",
+    sparse: Collection[str] = (),
 ) -> Columns:
     """The named columns of a frame, as `read_columns` has those of a file.
 
@@ -28,6 +32,7 @@ def read_frame(
     time: the column of time; the first one where None. The index of a pandas frame is the first
         where it has a name, dates, or numbers with a fraction.
     name: what messages call the frame.
+    sparse: series that may lack a value in some rows, NaN then.
 
     A unit is that of a name such as `theta [deg]`, or `frame.attrs["units"]["theta"]` of pandas.
     Raises DataError as `read_columns` does, with rows counted from 1.
@@ -35,7 +40,8 @@ def read_frame(
     place = Location(name)
     group = Group("", tuple(_columns(frame, place)))
     names = (*columns.values(), "1" if time is None else time)
-    request = Request(names, len(names) - 1, {})
+    lacking = frozenset(place for place, key in enumerate(columns) if key in sparse)
+    request = Request(names, len(names) - 1, {}, sparse=lacking)
     found = columns_of_groups([group], request, name, place, numbered=True)
     return columns_of(found, columns, name)
 

@@ -62,6 +62,8 @@ class CheckLimits:
     """Of the median interval: times that are off by more are told."""
     gap: Final[float] = 3.0
     """Steps of this many medians are gaps."""
+    moved: Final[float] = 0.05
+    """The part of its range by which an input moves around a gap that matters."""
     far_zero: Final[float] = 10.0
     """A record that begins this many times its length from zero is told times of its own."""
     least_digits: Final[int] = 6

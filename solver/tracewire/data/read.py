@@ -51,6 +51,7 @@ def read_columns(
     every: float | None = None,
     where: Mapping[str, str | float] | None = None,
     in_any_order: bool = False,
+    sparse: Collection[str] = (),
 ) -> Columns:
     """Read the named columns of a file.
 
@@ -67,10 +68,11 @@ def read_columns(
     every: the interval between rows, of a file without a column of time; the first row is at 0.
     where: column -> the text or number that a row must have there; other rows are left out.
     in_any_order: the time need not increase from row to row.
+    sparse: series that may lack a value in some rows, NaN then: a blank cell, NaN, NA or null.
 
     A header is found exactly, or without a unit in brackets: "t" finds "t [s]" and "t (s)". Lines
-    before the header that are no part of the table are left out, with a remark. Every number in the
-    columns that are used must be finite, the time must increase from row to row.
+    before the header that are no part of the table are left out, with a remark. Every other number
+    in the columns that are used must be finite, the time must increase from row to row.
 
     Raises DataError with up to ten problems, each with its line; OptionError on a wrong argument.
     """
@@ -90,7 +92,15 @@ def read_columns(
         for name, wanted in (where or {}).items()
     }
     clock = len(names) - 1 if every is None else None
-    request = Request(tuple(names), clock, conditions, (delimiter, decimal), comment, in_any_order)
+    request = Request(
+        tuple(names),
+        clock,
+        conditions,
+        (delimiter, decimal),
+        comment,
+        in_any_order,
+        frozenset(place for place, name in enumerate(columns) if name in sparse),
+    )
     found = known.columns(content, path, request, place)
     return columns_of(found, columns, file, every)
 
@@ -178,6 +188,7 @@ def read_record(
     every: float | None = None,
     where: Mapping[str, str | float] | None = None,
     in_any_order: bool = False,
+    sparse: Collection[str] = (),
     place: Location = Location(),
 ) -> Record:
     """Read the named columns of a file as a record in SI.
@@ -196,6 +207,7 @@ def read_record(
         every=every,
         where=where,
         in_any_order=in_any_order,
+        sparse=sparse,
     )
     unit = "s" if every is not None else time_unit
     return record_of(read, units or {}, unit, raw, place)

@@ -102,6 +102,24 @@ class Record:
         some = f"{len(rows)} of {len(self.t)} samples"
         return kept._told(f"trimmed to {kept.t[0]:g} ... {kept.t[-1]:g} s: {some}")
 
+    def known(self, signals: Iterable[str]) -> Record:
+        """Only the rows in which each of these columns has a value."""
+        lacks = {name: np.isnan(self.columns[name]) for name in signals}
+        words = []
+        for name, rows in lacks.items():
+            if count := int(rows.sum()):
+                some = f"{count} of {len(rows)} rows have no value of {name}"
+                words.append(f"{some}, and count for no signal; first at t = {self.t[rows][0]:g} s")
+        if not words:
+            return self
+        kept = np.flatnonzero(~np.any([*lacks.values()], axis=0))
+        if len(kept) < 2:
+            both = " and ".join(lacks)
+            what = f"{len(kept)} of {len(self.t)} rows have a value of {both}"
+            hint = "Give signals that are sampled at other times a series each."
+            raise OptionError.one(what, hint=hint)
+        return self._rows(kept)._told(*words)
+
     def shift(self, zero: float) -> Record:
         """The record with t = 0 at the time `zero` (s)."""
         if zero == 0:

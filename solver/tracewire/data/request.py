@@ -20,7 +20,8 @@ NO_VALUE = "Leave out the rows without a value."
 
 class Request(NamedTuple):
     """The wanted columns, which of them is the time, the values that other columns of a row must
-    have, the dialect, and whether the rows may stand in any order."""
+    have, the dialect, whether the rows may stand in any order, and the places among the wanted
+    columns of those that may lack a value in some rows, NaN then."""
 
     wanted: tuple[str, ...]
     clock: int | None
@@ -28,6 +29,7 @@ class Request(NamedTuple):
     dialect: tuple[str | None, str | None] = (None, None)
     comment: str = "#"
     in_any_order: bool = False
+    sparse: frozenset[int] = frozenset()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -58,9 +60,12 @@ def problems_of(found: Found, request: Request, file: str) -> list[Problem]:
         problems.append(Problem(what + where + more, Location(file, line), hint=hint))
 
     told = set()
-    for name, series in zip(found.names, found.series, strict=True):
-        bad = np.flatnonzero(~np.isfinite(series))
-        if bad.size and name not in told:
+    for place, (name, series) in enumerate(zip(found.names, found.series, strict=True)):
+        lacks = np.isnan(series) if place in request.sparse else np.zeros(len(series), dtype=bool)
+        bad = np.flatnonzero(~np.isfinite(series) & ~lacks)
+        if len(series) and lacks.all():
+            note(0, f"{name} has no value in any row", "Name another column.")
+        elif bad.size and name not in told:
             told.add(name)
             rows = f"{bad.size} rows, first here" if bad.size > 1 else "this row"
             note(int(bad[0]), f"{name} is not finite in {rows}", NO_VALUE)

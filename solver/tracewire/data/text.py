@@ -63,6 +63,8 @@ HINTS = (
         "A cell holds a number alone: write its unit in the header.",
     ),
 )
+BLANK = re.compile(r"|nan|n/?a|null|none", re.IGNORECASE)
+"""A cell of a sensor that gave no value."""
 AMBIGUOUS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+")
 
 
@@ -89,6 +91,8 @@ def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: L
     reading.conditions = dict(zip(filters, request.where.values(), strict=True))
     reading.guess = request.dialect[1] is None
     reading.clock = None if request.clock is None else found[request.clock]
+    whole = {column for n, column in enumerate(found) if n not in request.sparse}
+    reading.sparse = {found[n] for n in request.sparse} - whole
     reading.take(rows_of(lines, dialect.delimiter, request.comment, layout.first))
     columns = found[: len(request.wanted)]
     since = reading.from_dates()
@@ -156,6 +160,7 @@ class _Reading:
         self.lines = array("q")
         self.series: dict[int, array[float]] = {column: array("d") for column in used}
         self.clock: int | None = None
+        self.sparse: set[int] = set()
         self.dates: list[Instant] = []
         self.conditions: Mapping[int, str | float] = {}
         self.seen: list[dict[str, None]] = []
@@ -176,7 +181,7 @@ class _Reading:
             elif len(cells) != self.width:
                 self._note_width(row)
             elif self._is_chosen(cells):
-                numbers = [number(cells[column], decimal) for column in self.series]
+                numbers = [self._number(column, cells[column]) for column in self.series]
                 date = self._date(cells, numbers) if None in numbers else None
                 if None in numbers:
                     self._note_cells(row, numbers)
@@ -220,6 +225,12 @@ class _Reading:
 
     def name(self, column: int) -> str:
         return f"column '{self.names[column]}'" if self.names else f"column {column + 1}"
+
+    def _number(self, column: int, cell: str) -> float | None:
+        """The number in a cell; NaN where it is blank, and may be."""
+        found = number(cell, self.dialect.decimal)
+        is_blank = found is None and column in self.sparse and BLANK.fullmatch(cell)
+        return float("nan") if is_blank else found
 
     def _date(self, cells: Sequence[str], numbers: list[float | None]) -> Instant | None:
         """The date in the column of time, for which 0 is put into its place among the numbers."""

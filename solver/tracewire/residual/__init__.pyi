@@ -8,14 +8,9 @@ from .inputs import looks_held
 from .levenberg_marquardt import bounded_step, fit_windows
 from .limits import DESCENT, WINDOW
 from .linearisation import Linearisation, Projection, wrap_to_period
+from .load import load_measured, measured_series, series_parameters
 from .loss import LOSSES
-from .measured import (
-    Measured,
-    load_measured,
-    measured_series,
-    series_parameters,
-    with_measured_signals,
-)
+from .measured import Measured, with_measured_signals
 from .noise import degrees_of, noise_in, noise_of, noises_beside
 from .noise_estimate import NoiseEstimate, noise_level, noise_of_signal
 from .noise_of_channels import channel_noise, estimate_noise

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tracewire.data import read_frame, record_of, signal_remarks, time_remarks
 from tracewire.diagram import Hold, Use
-from tracewire.errors import DataError, FormulaError, Location, Problem, unknown
+from tracewire.errors import DataError, FormulaError, Location, OptionError, Problem, unknown
 from tracewire.residual.inputs import between_samples
 from tracewire.solve import Driving, with_points
 
@@ -126,14 +126,15 @@ def fields_of_frame(
     ):
         check.names(of, kind, given, names)
     check.finish()
-    read = read_frame(frame, {**measured, **driving}, time, name)
+    read = read_frame(frame, {**measured, **driving}, time, name, measured)
     try:
-        record = record_of(read, units, place=Location(name))
-    except FormulaError as error:
+        whole = record_of(read, units, place=Location(name))
+        record = whole.known(measured)
+    except (FormulaError, OptionError) as error:
         raise DataError(error.problems) from None
     steps, driven = list(record.steps), {}
-    for one in driving:
-        driven[one], told = between_samples(one, record.t, record.columns[one], hold.get(one))
+    for one in driving:  # also in rows without a value of a signal
+        driven[one], told = between_samples(one, whole.t, whole.columns[one], hold.get(one))
         steps.append(told)
     remarks = [*record.remarks, *time_remarks(record.t)]
     for column, values in record.columns.items():

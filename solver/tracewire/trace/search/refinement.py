@@ -183,16 +183,15 @@ def _is_tied(best: Trial, rival: Trial, delta_bic: float, options: SearchOptions
 
 
 def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:
-    """The best model on few of the shortest windows; None where those it stands on are as short, or
-    where it is far from the noise on these."""
-    length = search.lengths[0]
-    if length >= best.length:
-        return None
+    """The best model on few of the shortest windows; None where it stands on less than twice as
+    many samples, or where it is far from the noise on these."""
+    length, options = search.lengths[0], search.options.search
     segments = search.windows(search.data_split.whole(), length)
+    rows = few_of(segments, options.few)
+    if 2 * len(rows) * length > len(best.windows.segments) * best.length:
+        return None
     try:
-        few = search.problem.refit(
-            best, [segments[n] for n in few_of(segments, search.options.search.few)], length
-        )
+        few = search.problem.refit(best, [segments[n] for n in rows], length)
     except FitError:
         return None
     return few if few.reduced_chi2 < search.options.trial.gate_noise else None
