@@ -13,7 +13,7 @@ delay = Block(
         Parameter("time", "s", above=0.0),
         Parameter("before", doc="the input before the start", default=0.0),
     ),
-    outputs=(Output("y", "delayed(of, time, past)"),),
+    outputs=(Output("y", "delayed(of, time, past)", unit_of="of"),),
     source="A. Bellen, M. Zennaro, Numerical Methods for Delay Differential Equations, 2003.",
 )
 
@@ -32,7 +32,11 @@ variable_delay = Block(
     ),
     require=("shortest <= longest",),
     outputs=(
-        Output("y", "delayed(of, min(max(time, shortest), longest), past, shortest, longest)"),
+        Output(
+            "y",
+            "delayed(of, min(max(time, shortest), longest), past, shortest, longest)",
+            unit_of="of",
+        ),
     ),
     source="A. Bellen, M. Zennaro, Numerical Methods for Delay Differential Equations, 2003.",
 )
@@ -51,7 +55,7 @@ pade_delay = Block(
         State("x_2", "(x_3 - 60*of - 60*(x - of))/delay", "0"),
         State("x_3", "120*(of - (x - of))/delay", "120*start"),
     ),
-    outputs=(Output("y", "x - of"),),
+    outputs=(Output("y", "x - of", unit_of="of"),),
     source="G. H. Golub, C. F. Van Loan, Matrix Computations, section 9.3: the (3, 3) Pade form of"
     " exp(-p).",
 )

@@ -29,7 +29,7 @@ unit_delay = Block(
     parameters=(*CLOCK, Parameter("start", doc="the output until the second sample", default=0.0)),
     states=(State("y", "zeros_like(of)", "start"), BEGUN),
     events=tick(y="of"),
-    outputs=(Output("y", "y", doc="jumps"),),
+    outputs=(Output("y", "y", doc="jumps", unit_of="of"),),
     source="The shift operator of sampled signals: K. J. Astrom, B. Wittenmark,"
     " Computer-Controlled Systems, 1997.",
 )

@@ -18,7 +18,7 @@ first_order = Block(
     inputs=(OF,),
     parameters=(LAG_TIME, GAIN, LAG_START),
     states=LAG,
-    outputs=(Output("y", "k*x"),),
+    outputs=(Output("y", "k*x", unit_of="of", factor="k"),),
     source="It comes to 1 - 1/e of a step within the time constant: K. J. Astrom, R. M. Murray,"
     " Feedback Systems, 2008.",
 )
@@ -29,7 +29,7 @@ lead_lag = Block(
     inputs=(OF,),
     parameters=(Parameter("lead", "s", "the time of the zero"), LAG_TIME, GAIN, LAG_START),
     states=LAG,
-    outputs=(Output("y", "k*(x + lead/lag*(of - x))"),),
+    outputs=(Output("y", "k*(x + lead/lag*(of - x))", unit_of="of", factor="k"),),
     source="Loop shaping by lead and lag compensation: K. J. Astrom, R. M. Murray, Feedback"
     " Systems, 2008.",
 )
@@ -65,7 +65,7 @@ second_order = Block(
     inputs=(OF,),
     parameters=(FREQUENCY, Parameter("damping", doc="the ratio of damping", low=0.0), GAIN, START),
     states=SECOND_ORDER,
-    outputs=(Output("y", "k*low"),),
+    outputs=(Output("y", "k*low", unit_of="of", factor="k"),),
     source="The equation of a mass on a spring with a damper: K. J. Astrom, R. M. Murray,"
     " Feedback Systems, 2008.",
 )
@@ -76,7 +76,7 @@ low_pass = Block(
     inputs=(OF,),
     parameters=(FREQUENCY, BUTTERWORTH, START),
     states=SECOND_ORDER,
-    outputs=(Output("y", "low"),),
+    outputs=(Output("y", "low", unit_of="of"),),
     source="With a damping of 1/sqrt(2): S. Butterworth, On the theory of filter amplifiers,"
     " Wireless Engineer 7 (1930) 536.",
 )
@@ -87,7 +87,7 @@ high_pass = Block(
     inputs=(OF,),
     parameters=(FREQUENCY, BUTTERWORTH, START),
     states=SECOND_ORDER,
-    outputs=(Output("y", "of - low - 2*damping*band"),),
+    outputs=(Output("y", "of - low - 2*damping*band", unit_of="of"),),
     source="The low pass with 1/p in the place of p.",
 )
 
@@ -97,7 +97,7 @@ band_pass = Block(
     inputs=(OF,),
     parameters=(FREQUENCY, WIDTH, START),
     states=SECOND_ORDER,
-    outputs=(Output("y", "2*damping*band"),),
+    outputs=(Output("y", "2*damping*band", unit_of="of"),),
     source="What the notch takes away: 1 - (p^2 + 1)/(p^2 + 2*damping*p + 1).",
 )
 
@@ -107,6 +107,6 @@ notch = Block(
     inputs=(OF,),
     parameters=(FREQUENCY, WIDTH, START),
     states=SECOND_ORDER,
-    outputs=(Output("y", "of - 2*damping*band"),),
+    outputs=(Output("y", "of - 2*damping*band", unit_of="of"),),
     source="What the band pass leaves: 1 - 2*damping*p/(p^2 + 2*damping*p + 1).",
 )

@@ -44,5 +44,5 @@ rate_limiter = Block(
     ),
     # it slides on y = of wherever the signal is slower than the limits
     states=(State("y", "rising if of >= y else -falling", "start"),),
-    outputs=(Output("y", "y"),),
+    outputs=(Output("y", "y", unit_of="of"),),
 )

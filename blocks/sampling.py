@@ -14,7 +14,7 @@ sample_and_hold = Block(
     parameters=(Parameter("threshold", default=0.5), START),
     states=(State("y", rate="0", start="start"),),
     events=(Event("sample", when="trigger - threshold", crosses="up", set={"y": "of"}),),
-    outputs=(Output("y", "y", doc="jumps"),),
+    outputs=(Output("y", "y", doc="jumps", unit_of="of"),),
 )
 
 zero_order_hold = Block(
@@ -28,5 +28,5 @@ zero_order_hold = Block(
     ),
     states=(State("y", rate="0", start="start"),),
     events=(Event("sample", every="period", offset="offset", set={"y": "of"}),),
-    outputs=(Output("y", "y", doc="jumps; at a start on a sample, the sample"),),
+    outputs=(Output("y", "y", doc="jumps; at a start on a sample, the sample", unit_of="of"),),
 )

@@ -29,7 +29,7 @@ abs_ = Block(
     name="abs",
     doc="The absolute value.",
     inputs=(Input("of"),),
-    outputs=(Output("y", "abs(of)"),),
+    outputs=(Output("y", "abs(of)", unit_of="of"),),
 )
 
 min_ = Block(
@@ -52,7 +52,7 @@ saturation = Block(
     require=("low <= high",),
     inputs=(Input("of"),),
     parameters=LIMITS,
-    outputs=(Output("y", "high if of >= high else (low if of <= low else of)"),),
+    outputs=(Output("y", "high if of >= high else (low if of <= low else of)", unit_of="of"),),
 )
 
 dead_zone = Block(
@@ -61,7 +61,9 @@ dead_zone = Block(
     require=("low <= high",),
     inputs=(Input("of"),),
     parameters=LIMITS,
-    outputs=(Output("y", "of - high if of >= high else (of - low if of <= low else 0)"),),
+    outputs=(
+        Output("y", "of - high if of >= high else (of - low if of <= low else 0)", unit_of="of"),
+    ),
 )
 
 quantizer = Block(
@@ -69,6 +71,8 @@ quantizer = Block(
     doc="The nearest whole multiple of an interval, as of a converter or an encoder.",
     inputs=(Input("of"),),
     parameters=(Parameter("interval", doc="between two levels", above=0.0),),
-    outputs=(Output("y", "interval*floor(of/interval + 1/2)", doc="jumps; halves go up"),),
+    outputs=(
+        Output("y", "interval*floor(of/interval + 1/2)", doc="jumps; halves go up", unit_of="of"),
+    ),
     source="The mid-tread quantizer: B. Widrow, I. Kollar, Quantization Noise, 2008.",
 )

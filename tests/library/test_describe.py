@@ -107,12 +107,22 @@ def test_a_program_is_told_the_same() -> None:
     assert told["effect"] is None
     assert told["source"] == "A book, Eq 1."
     assert told["outputs"] == [
-        {"name": "y", "formula": "x", "unit": "m", "doc": "follows", "feedthrough": []},
+        {
+            "name": "y",
+            "formula": "x",
+            "unit": "m",
+            "doc": "follows",
+            "unit_of": "",
+            "factor": "",
+            "feedthrough": [],
+        },
         {
             "name": "z",
             "formula": "of + sum(more) + u",
             "unit": "",
             "doc": "all",
+            "unit_of": "",
+            "factor": "",
             "feedthrough": ["of", "more", "u"],
         },
     ]

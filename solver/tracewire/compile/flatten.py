@@ -81,6 +81,12 @@ def _scaled(formula: Expression, factor: float) -> Expression:
     return Call("*", (formula, Number(factor)))
 
 
+def _signal_of(wire: Expression | None) -> str:
+    """The signal that a wire carries, also with a sign; '' where it carries another formula."""
+    source = wire.arguments[0] if isinstance(wire, Call) else wire
+    return source.name if isinstance(source, Name) else ""
+
+
 class _Flattener:
     def __init__(self, diagram: Diagram) -> None:
         self.top = diagram
@@ -92,6 +98,7 @@ class _Flattener:
         self.memories: list[FlatMemory] = []
         self.blocks: dict[str, FlatBlock] = {}
         self.units: dict[str, str] = {}
+        self.units_of: dict[str, str] = {}  # signals that have the unit of another one
         self.asked: list[FlatAsked] = []
         self.shown: dict[str, Shown] = {}
         self.guesses: dict[str, Expression] = {}
@@ -109,6 +116,7 @@ class _Flattener:
             self.show(name, name, port.shown)
         self.add_parameters(top, "", {})
         self.add_diagram(top, "", "", inputs)
+        self.add_units()
         self.add_samples()
         self.refuse_jumps()
         scope = _Scope(top, "", inputs)
@@ -141,6 +149,17 @@ class _Flattener:
             memories=tuple(self.memories),
             require=tuple(self.require),
         )
+
+    def add_units(self) -> None:
+        """The units that outputs of blocks have from their inputs, as a filter has."""
+        for name in self.units_of:
+            source, seen = name, set[str]()
+            while not self.units.get(source) and source in self.units_of and source not in seen:
+                seen.add(source)
+                source = self.units_of[source]
+            self.units[name] = unit = self.units.get(source, "")
+            if name in self.states:
+                self.states[name] = replace(self.states[name], unit=unit)
 
     def add_samples(self) -> None:
         """The ports that a clock samples, when everything is known that they may read."""
@@ -256,9 +275,7 @@ class _Flattener:
             if not itself:  # a port may have the name of the block that it carries
                 self.signals[name] = carried
                 self.places[name] = wire.place
-            source = carried.arguments[0] if isinstance(carried, Call) else carried
-            own = self.units.get(source.name, "") if isinstance(source, Name) else ""
-            self.units[name] = use.unit or own
+            self.units[name] = use.unit or self.units.get(_signal_of(carried), "")
             self.show(name, path[:-1], use.shown)
 
     def add_block(self, use: BlockUse, block: Block, scope: _Scope, definition: str) -> None:
@@ -319,6 +336,9 @@ class _Flattener:
             self.units[name] = unit
             self.show(name, path, use.shown if name in outputs else Shown(use.shown.label))
         for name, output in outputs.items():
+            wired = _signal_of(names.get(output.unit_of))
+            if wired and not (use.unit or output.factor in use.settings):
+                self.units_of[name] = wired
             formula = written(block.formulas[output.name])
             self.blocks[name] = FlatBlock(
                 name, use.type, definition + use.name, _resolved(use.local, scope), place

@@ -6,7 +6,7 @@ import keyword
 import math
 from collections.abc import Sequence
 
-from tracewire.errors import FormulaError, Location, Problem
+from tracewire.errors import FormulaError, Location, Problem, unknown
 from tracewire.formula import is_name, read_unit
 from tracewire.library.check_effects import Face, check_effect
 from tracewire.library.check_formula import Use, check_formula
@@ -29,6 +29,10 @@ def check_block(block: Parts, place: Location) -> list[Problem]:
     for output in block.outputs:
         what = f"output '{output.name}'"
         problems += check_by_mode(block, output.formula, what, everything, place)
+        if output.unit_of and output.unit_of not in {port.name for port in block.inputs}:
+            known = [port.name for port in block.inputs]
+            hint = f"The {what} has its unit."
+            problems.append(unknown("input", output.unit_of, known, place, hint))
     for state in block.states:
         what = f"the rate of '{state.name}'"
         problems += check_by_mode(block, state.rate, what, everything, place)

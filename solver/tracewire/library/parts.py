@@ -57,12 +57,18 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Output:
-    """An output port and its formula over inputs, parameters, states and `t`."""
+    """An output port and its formula over inputs, parameters, states and `t`.
+
+    Its unit is `unit`, or that of the input `unit_of`, unless its factor, the parameter `factor`,
+    is set: it may have a unit, too.
+    """
 
     name: str
     formula: ByMode = field(hash=False)
     unit: str = ""
     doc: str = ""
+    unit_of: str = ""
+    factor: str = ""
 
 
 @dataclass(frozen=True)

@@ -102,9 +102,13 @@ def test_a_turn_is_the_period_of_an_angle_that_goes_round() -> None:
     t = np.arange(0, 30, 0.03)
     turning = replace(record(end=12.0), t=t, values={"x": 2 * np.pi * 10 * t / 30})
     assert shortest_of(turning, "rad") == 20, "of 100 samples a turn"
-    assert shortest_of(turning, "m") > 200, "a way has no turns"
+    assert shortest_of(turning, "m") > 100, "a way has no turns"
+    speed = replace(turning, values={"x": np.full_like(t, 2 * np.pi * 10 / 30)})
+    assert shortest_of(speed, "rad/s") == 20, "by its speed alone"
+    fast = replace(turning, values={"x": 2 * np.pi * 100 * t / 30})
+    assert shortest_of(fast, "rad") > 100, "ten samples show no turn"
     slow = replace(turning, values={"x": 2 * np.pi * 4 * t / 30})
-    assert shortest_of(slow, "rad") > 200, "too few turns"
+    assert shortest_of(slow, "rad") > 100, "too few turns"
 
 
 def test_windows_grow_threefold_up_to_the_whole_section() -> None:

@@ -83,6 +83,18 @@ def test_a_shape_on_its_bound_says_that_the_record_ends_there() -> None:
     )
 
 
+def test_a_phase_comes_round_and_has_no_bound() -> None:
+    problem = problem_of(record(lambda x, v: -0.5 * np.sin(12 * x + 1.0)))
+    cogging = candidates_of(problem)["cogging @ force"]
+    limits = {**cogging.limits, "phase": (0.0, 1e-3)}
+    narrow = PlacedEffect(
+        replace(cogging, limits=limits), {"amplitude": 0.5, "pitch": 0.52, "phase": 1e-3}
+    )
+    trial = trial_of(problem, [narrow])
+    assert trial.values["cogging.phase"] in (0.0, 1e-3)
+    assert [one for one in at_bounds(trial) if one.name == "cogging.phase"] == []
+
+
 def test_the_smoothing_of_a_law_at_zero_is_the_exact_law() -> None:
     low = AtBound("stribeck.width", "shape", 0.0, 0.0, 1.0, False, "m/s", "stribeck @ net")
     assert low.exact

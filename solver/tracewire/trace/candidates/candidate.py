@@ -10,6 +10,9 @@ from tracewire.library import Scale
 from tracewire.residual import Unknown
 from tracewire.trace.candidates.places import Place
 
+PHASE = "phase"
+"""A shape of this name turns a sine into a cosine: the two together span all phases."""
+
 
 @dataclass(frozen=True)
 class Candidate:

@@ -89,6 +89,7 @@ def _fit_horizons(pool: ModelPool, trial: Trial) -> Finalist | None:
     first, from the values that it has: a fit to long windows from afar ends in the next
     minimum. None where it does not run."""
     trials: list[Trial] = []
+    pool.search.tell(f"refitting with {' and '.join(sorted(map(str, trial.effects)))}")
     for horizon in pool.horizons.each:
         try:
             target = pool.target(horizon.length, len(trial.effects))

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.residual import Section, Segment, cut_windows, edges_within
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.thresholds import CheckOptions
 from tracewire.trace.trials.data_split import samples_in_turn
 
 Vector = NDArray[np.float64]
@@ -142,7 +141,7 @@ def horizons_of(
     )
     total = sum(section.count for section in sections)
     interval = float(np.median([section.measured.interval for section in sections]))
-    period = float(np.median([period_of(model, section, options.check) for section in sections]))
+    period = float(np.median([period_of(model, section, options) for section in sections]))
     periodic = bool(np.isfinite(period))
     long = options.horizon / interval if options.horizon else options.long_horizon * period
     most, least = total / options.least_blocks, total / options.most_blocks
@@ -183,8 +182,8 @@ def horizons_of(
     )
 
 
-def period_of(model: Model, section: Section, options: CheckOptions) -> float:
-    """The samples of a period: the dominant one, or a turn of an angle that goes round."""
+def period_of(model: Model, section: Section, options: TraceOptions) -> float:
+    """The samples of a period: the dominant one, or a turn of what goes round."""
     turns = [samples_in_turn(model, n, section.measured, options) for n in section.measured.values]
     return min(dominant_period(section), float(np.median(turns)))
 

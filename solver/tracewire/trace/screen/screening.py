@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Unknown, Windows, project_out_initial_states
-from tracewire.trace.candidates.candidate import Candidate, is_default
+from tracewire.trace.candidates.candidate import PHASE, Candidate, is_default
 from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
 from tracewire.trace.candidates.lines import with_lines
 from tracewire.trace.candidates.signal_scales import Trajectory
@@ -30,8 +30,6 @@ from tracewire.trace.trials.trial import PlacedEffect, Trial
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Ints = NDArray[np.intp]
-PHASE = "phase"
-"""A shape of this name turns a sine into a cosine: the two together span all phases."""
 TOGETHER = 2_000_000
 """Numbers of torques that are looked at once."""
 NEAR = 1e-6

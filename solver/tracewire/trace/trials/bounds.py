@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from tracewire.residual import OWN, Unknown, is_of_sensor
+from tracewire.trace.candidates.candidate import PHASE
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 Kind = Literal["parameter", "sensor", "coefficient", "shape"]
@@ -90,7 +91,8 @@ def at_bounds(trial: Trial) -> list[AtBound]:
     """The fitted numbers of a trial that sit on a bound: declared parameters and sensors first.
 
     A number is on a bound where it is nearer to it than a thousandth of their range and of its own
-    size; between positive bounds more than tenfold apart, of the range of their logarithms.
+    size; between positive bounds more than tenfold apart, of the range of their logarithms. A phase
+    comes round: its bounds cut nothing off.
     """
     effects = {effect.unknown(name): effect for effect in trial.effects for name in effect.values}
     found = []
@@ -101,6 +103,8 @@ def at_bounds(trial: Trial) -> list[AtBound]:
         if not upper and not _near(unknown, value, near, upper=False):
             continue
         effect = effects.get(unknown.name)
+        if effect is not None and _is_phase(unknown.name):
+            continue
         low, high = unknown.low, unknown.high
         unit = _unit(trial, unknown.name, effect)
         kind = _kind(trial, unknown.name, effect)
@@ -128,6 +132,11 @@ def _near(unknown: Unknown, value: float, part: float, upper: bool) -> bool:
         return abs(math.log(value / bound)) <= part * math.log(high / low)
     size = max(abs(bound), unknown.scale)
     return abs(value - bound) <= part * min(size, high - low)
+
+
+def _is_phase(name: str) -> bool:
+    """Whether an unknown is the phase of an effect, perhaps in one series."""
+    return name.partition(OWN)[0].rpartition(".")[2] == PHASE
 
 
 def _kind(trial: Trial, name: str, effect: PlacedEffect | None) -> Kind:

@@ -292,7 +292,8 @@ class TraceProblem:
 
     def _refit_ruled(self, trial: Trial) -> Trial:
         """A trial that a few windows rule, fitted without them first and then to all, where that
-        does better: values and a start may hold each other where neither is right."""
+        does better: values and a start may hold each other where neither is right. Neither fit may
+        take more steps than the one that gave the trial."""
         options, segments = self.options.trial, trial.windows.segments
         means = trial.window_mean_squares
         others = np.flatnonzero(means <= options.ruling * np.median(means)).tolist()
@@ -300,14 +301,15 @@ class TraceProblem:
         if trial.reduced_chi2 < options.not_astray or len(others) == len(segments) or not few:
             return trial
         fixed, inlier_limit = trial.windows.criterion.parameters, trial.inlier_limit
+        budget = trial.windows.criterion.steps
         try:
             there = self.fit(
                 trial.effects, [segments[n] for n in others], trial.length, trial.values,
-                fixed=fixed, inlier_limit=inlier_limit,
+                fixed=fixed, budget=budget, inlier_limit=inlier_limit,
             )  # fmt: skip
             whole = self.fit(
                 there.effects, with_starts_of(segments, there, others), trial.length, there.values,
-                fixed=fixed, target=trial.rss, inlier_limit=inlier_limit,
+                fixed=fixed, budget=budget, target=trial.rss, inlier_limit=inlier_limit,
             )  # fmt: skip
         except FitError:
             return trial
