@@ -24,7 +24,10 @@ blocks:
 
 
 def trial(rss: float, **values: float) -> Any:
-    return SimpleNamespace(rss=rss, values=values)
+    criterion = SimpleNamespace(parameters={})
+    return SimpleNamespace(
+        rss=rss, values=values, effects=(), windows=SimpleNamespace(criterion=criterion)
+    )
 
 
 @dataclass
@@ -73,6 +76,19 @@ class Pool(ModelPool):
         self.sizes.append(added[0].size)
         return trial(next(self.left))
 
+    def run_refit(
+        self,
+        now: Any,
+        effects: Any,
+        fixed: Any,
+        steps: Any,
+        target: Any,
+        values: Any = None,
+        segments: Any = None,
+    ) -> Any:
+        self.sizes.append(effects[-1].size)
+        return trial(next(self.left))
+
     def _select_first_fits(self, now: Any, first_fits: Any, number: int) -> Any:
         self.first_fits += [one.rss for one in first_fits]
         return []
@@ -103,6 +119,14 @@ def test_a_lag_begins_at_each_of_its_sizes_and_the_best_fit_is_kept() -> None:
     pool.extend(declared, 0, [proposal("lag", 1.0, 20.0, 60.0)])
     assert pool.sizes == [1.0, 20.0, 60.0]
     assert pool.first_fits == [1.0]
+
+
+def test_no_other_size_is_tried_where_the_first_takes_nearly_all() -> None:
+    pool = Pool(trial(9.0, k=31.0, c=11.0), [0.8])
+    declared: Any = SimpleNamespace(names=frozenset(), dropped=())
+    pool.extend(declared, 0, [proposal("lag", 1.0, 20.0, 60.0)])
+    assert pool.sizes == [1.0]
+    assert pool.first_fits == [0.8]
 
 
 def test_beside_other_effects_it_begins_where_it_promises_to_be() -> None:

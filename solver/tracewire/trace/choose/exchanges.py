@@ -12,8 +12,9 @@ from tracewire.trace.trials.trial import PlacedEffect, Trial
 
 def exchange_single_effects(pool: ModelPool) -> None:
     """The best models of one effect with each of those that do most like it to the residual of the
-    declared model. A screen is linear: where an effect lets a declared parameter come far, as drag
-    does that of a friction that falls with the speed, another law may promise more and leave more.
+    declared model, however long the search was. A screen is linear: where an effect lets a declared
+    parameter come far, as drag does that of a friction that falls with the speed, another law may
+    promise more and leave more.
     """
     for model in pool.best(1, pool.options.exchanged):
         (name,) = model.names
@@ -21,10 +22,12 @@ def exchange_single_effects(pool: ModelPool) -> None:
 
 
 def exchange_effects(pool: ModelPool, size: int) -> None:
-    """The best models of a size with each effect exchanged for those that may stand there."""
+    """The best models of a size with each effect exchanged for those that may stand there, while
+    there is time."""
     for model in pool.best(size, pool.options.exchanged):
         for name in sorted(model.names):
-            _replace_effect(pool, model, name, _alternatives(pool, model, name))
+            if pool.spent <= pool.options.most_steps:
+                _replace_effect(pool, model, name, _alternatives(pool, model, name))
 
 
 def _look_alikes(pool: ModelPool, name: str) -> list[PlacedEffect]:
@@ -73,7 +76,7 @@ def _replace_effect(
         names = model.names - {name} | {str(other)}
         known = pool.models.get((names, model.dropped))
         near = known is not None and known.rss <= pool.options.hopeful * model.rss
-        if near or pool.spent > pool.options.most_steps:
+        if near:
             continue
         pool.search.tell(f"refitting with {' and '.join(sorted(names))}")
         trials: list[Trial] = []

@@ -145,11 +145,12 @@ class ModelPool:
         """The refit of an effect alone, or a better one from another size of its coefficient: a lag
         of a minute is not reached from one of two samples. The same refit where it takes nearly all
         of the squared error."""
-        if trial is not None and trial.rss < (1 - self.options.decisive) * now.rss:
+        sizes = effect.candidate.at_sizes[1:]
+        if not sizes or (trial and trial.rss < (1 - self.options.decisive) * now.rss):
             return trial
         found = [trial] if trial else []
         fixed, steps = dict(now.windows.criterion.parameters), self.options.first_steps
-        for size in effect.candidate.at_sizes[1:]:
+        for size in sizes:
             target = min((one.rss for one in found), default=np.inf)
             effects = (*now.effects, effect.with_value(effect.candidate.parameter, size))
             other = self.run_refit(now, effects, fixed, steps, target)
