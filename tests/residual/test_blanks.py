@@ -49,7 +49,7 @@ def test_a_blank_cell_of_a_signal_leaves_its_row_out_and_not_its_input(
     assert times.tolist() == [0, 1, 2, 3, 4]
     assert values.tolist() == [1, 2, 3, 4, 5]
     for name, first in (("x", 1), ("v", 3)):
-        words = f"1 of 5 rows have no value of {name}, and count for no signal; first at t = "
+        words = f"{name} has no value in 1 of 5 rows, which count for no signal, the first at t = "
         assert f"{words}{first} s" in run.steps
 
 
@@ -73,7 +73,7 @@ def test_what_cannot_be_blank_is_told(tmp_path: Path, rows: str, said: str) -> N
 def test_a_step_that_looks_at_several_samples_refuses_blanks(tmp_path: Path) -> None:
     rows = "".join(f"{n / 10},{'' if n == 7 else n},1,0\n" for n in range(60))
     outliers = DIAGRAM + "    clean: [{outliers: {signals: x}}]\n"
-    with pytest.raises(DataError, match="1 rows have no value of 'x', first") as told:
+    with pytest.raises(DataError, match="'x' has no value in 1 of 60 rows") as told:
         load(tmp_path, rows, outliers)
     assert "'outliers' of series 'run'" in str(told.value)
     calibrated = DIAGRAM + "    clean: [{calibrate: {signal: x, gain: 2}}, {trim: {from: 1}}]\n"

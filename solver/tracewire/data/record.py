@@ -108,8 +108,9 @@ class Record:
         words = []
         for name, rows in lacks.items():
             if count := int(rows.sum()):
-                some = f"{count} of {len(rows)} rows have no value of {name}"
-                words.append(f"{some}, and count for no signal; first at t = {self.t[rows][0]:g} s")
+                some = f"{name} has no value in {count} of {len(rows)} rows"
+                first = f"the first at t = {self.t[rows][0]:g} s"
+                words.append(f"{some}, which count for no signal, {first}")
         if not words:
             return self
         kept = np.flatnonzero(~np.any([*lacks.values()], axis=0))

@@ -87,7 +87,7 @@ def _refuse_blanks(record: Record) -> None:
     OptionError."""
     for name, column in record.columns.items():
         if count := int(np.isnan(column).sum()):
-            what = f"{count} rows have no value of '{name}', first at t = "
+            what = f"'{name}' has no value in {count} of {len(column)} rows, the first at t = "
             what += f"{record.t[np.isnan(column)][0]:g} s"
             hint = "Leave out the step, or these rows of the file."
             raise OptionError.one(what, hint=hint)
