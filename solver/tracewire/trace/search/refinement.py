@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tracewire.errors import FitError
-from tracewire.solve import parameter_values
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.common import least_part, uncommon
@@ -17,7 +16,6 @@ from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import RefitTask
 from tracewire.trace.thresholds import SearchOptions
-from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.statistics import errors_behind
 from tracewire.trace.trials.trial import PlacedEffect, Trial
 
@@ -95,14 +93,10 @@ def _prepare_refit(
     effects: Sequence[PlacedEffect],
     fixed: dict[str, float] | None = None,
     words: str = "",
-    values: Mapping[str, float] | None = None,
 ) -> RefitTask:
-    """The trial with other effects on the same windows, to be refitted; from its values, or others
-    of some."""
+    """The trial with other effects on the same windows, to be refitted."""
     segments, target = trial.windows.segments, target_of(trial, search.options)
-    return search.refits.prepare(
-        trial, effects, segments, fixed=fixed, target=target, values=values, words=words
-    )
+    return search.refits.prepare(trial, effects, segments, fixed=fixed, target=target, words=words)
 
 
 def _exchange_effect(
@@ -130,10 +124,7 @@ def _exchange_effect(
         for added, _ in known[:most]
         if str(added) not in kept
     ]
-    near = [
-        _prepare_refit(search, best, effects, values=values)
-        for effects, values in _not_far_behind(search, declared, few, each)
-    ]
+    near = [_prepare_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
     for trial in search.refits.run(best, near):
         if trial is not None:
             if _count_numbers(trial.effects[number]) < _count_numbers(effect):
@@ -207,34 +198,16 @@ def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:
 
 
 def _not_far_behind(
-    search: Search, declared: Trial, few: Trial | None, each: Sequence[list[PlacedEffect]]
-) -> list[tuple[list[PlacedEffect], Mapping[str, float]]]:
-    """The effects that do not so badly on few short windows that long ones need not be tried, and
-    the values at which these begin where it is not those of the best model.
-
-    What sat on a bound without an effect may be there still, in the next minimum: it begins at its
-    value in the diagram, too.
-    """
+    search: Search, few: Trial | None, each: Sequence[list[PlacedEffect]]
+) -> list[list[PlacedEffect]]:
+    """The effects that do not so badly on few short windows that long ones need not be tried."""
     if few is None:
-        return [(effects, {}) for effects in each]
+        return list(each)
     target, refits = search.options.search.behind * few.rss, search.refits
-    own = parameter_values(search.problem.declared, {})
-    held = {one.name for one in at_bounds(declared) if one.kind == "parameter"}
-    freed = {name: own[name] for name in held & own.keys() & few.values.keys()}
-    found: dict[int, tuple[Trial, Mapping[str, float]]] = {}
-    for values in ({}, freed) if freed else ({},):
-        tasks = [
-            refits.prepare(few, effects, few.windows.segments, target=target, values=values)
-            for effects in each
-        ]
-        for number, trial in enumerate(refits.run(few, tasks)):
-            if trial is not None and trial.rss < (
-                found[number][0].rss if number in found else np.inf
-            ):
-                found[number] = trial, trial.values if values else {}
-    return [
-        (each[n], values) for n, (trial, values) in sorted(found.items()) if trial.rss <= target
-    ]
+    segments = few.windows.segments
+    tasks = [refits.prepare(few, effects, segments, target=target) for effects in each]
+    trials = refits.run(few, tasks)
+    return [e for e, t in zip(each, trials, strict=True) if t is not None and t.rss <= target]
 
 
 def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:
