@@ -49,12 +49,10 @@ def theta(value: str) -> bytes:
 
 
 REFUSED: dict[str, Callable[[], bytes]] = {
-    "a value is NaN": lambda: cell(1, "nan"),
     "a time is NaN": lambda: cell(0, "nan"),
     "a value is infinite": lambda: cell(1, "-inf"),
     "a value is text": lambda: cell(1, "abc"),
     "a time is text": lambda: cell(0, "abc"),
-    "a cell is empty": lambda: cell(1, ""),
     "a time is missing": lambda: cell(0, ""),
     "a number is cut off": lambda: cell(1, "1e"),
     "a mark stands for a value": lambda: cell(1, "#N/A"),
@@ -74,7 +72,6 @@ REFUSED: dict[str, Callable[[], bytes]] = {
     "a column has another name": lambda: written(measured(), "t [s],phi [rad]"),
     "no header": lambda: written(measured()[1:], ",".join(measured()[0])),
     "cut off in a line": lambda: written(measured()[:157]) + b"12.5",
-    "cut off behind a comma": lambda: written(measured()[:100]) + b"8.0,",
     "a row is longer": lambda: cell(1, "0.5,1"),
     "a byte is zero": lambda: cell(1, "\0"),
     "a quote is open": lambda: cell(0, '"0.56'),
@@ -104,6 +101,9 @@ ODD: dict[str, Callable[[], bytes]] = {
     "three rows": lambda: written(measured()[:3]),
     "a gap": lambda: written(measured()[:80] + measured()[180:]),
     "a spike": lambda: cell(1, "1e6"),
+    "a value is NaN": lambda: cell(1, "nan"),
+    "a cell is empty": lambda: cell(1, ""),
+    "cut off behind a comma": lambda: written(measured()[:100]) + b"8.0,",
 }
 
 
@@ -156,6 +156,13 @@ def test_other_ways_to_write_the_same_numbers_have_the_same_fit(
 @pytest.mark.parametrize("what", ODD)
 def test_a_fit_of_odd_numbers_is_finite_or_refused(asked: Callable[..., Result], what: str) -> None:
     finite_or_refused(asked("fit", ODD[what]()))
+
+
+@pytest.mark.parametrize("what", ["a value is NaN", "a cell is empty", "cut off behind a comma"])
+def test_a_row_without_a_value_is_told(asked: Callable[..., Result], what: str) -> None:
+    told = asked("check", ODD[what]())
+    assert told.code == 0
+    assert "theta has no value in 1 of " in told.out
 
 
 @pytest.mark.slow

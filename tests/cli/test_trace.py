@@ -173,7 +173,7 @@ def test_a_diagram_without_measured_series_is_told(call: Any, tmp_path: Path) ->
 
 
 def test_a_bad_record_is_told_with_its_line(call: Any, tmp_path: Path) -> None:
-    (tmp_path / "swing.csv").write_text("t,theta\n0,0\n0.1,NaN\n0.2,1\n", encoding="utf-8")
+    (tmp_path / "swing.csv").write_text("t,theta\n0,0\n0.1,inf\n0.2,1\n", encoding="utf-8")
     (tmp_path / "swing.yaml").write_text(DIAGRAM, encoding="utf-8")
     told = call("trace", tmp_path / "swing.yaml")
     assert told.code == 2

@@ -40,7 +40,8 @@ def fill_pool(pool: ModelPool, declared: Finalist) -> None:
         if refitted is not None:
             pool.keep_better(refitted)
     pool.free_single_effects()
-    if _improves(pool, 1):
+    # where no body comes back much looks the same, and what takes all is as good as its kin
+    if _improves(pool, 1) and (pool.search.has_revisits or not _takes_all(pool, 1)):
         exchange_single_effects(pool)
         pool.free_single_effects()
     for smaller in pool.without_terms(declared) if not _takes_all(pool, 1) else ():
