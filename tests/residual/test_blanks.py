@@ -103,3 +103,10 @@ def test_a_fit_over_blanks_knows_the_drive_there(tmp_path: Path) -> None:
         "cell blank"
     ]
     assert abs(tw.fit(model, method="least_squares").values["k"] / 7 - 1) > 0.05
+
+
+def test_a_gap_outside_of_the_window_is_not_told(tmp_path: Path) -> None:
+    rows = "".join(f"{n},{n},1,{n % 2}\n" for n in [*range(20), *range(40, 60)])
+    assert any("not known in the gap" in remark for remark in load(tmp_path, rows).remarks)
+    cut = load(tmp_path, rows, DIAGRAM + "    to: 15\n")
+    assert not any("not known in the gap" in remark for remark in cut.remarks)

@@ -115,12 +115,8 @@ def _measured(
     own = series_parameters(model, series)
     values = parameter_values(model, {**parameters, **own}, series.preset)
     zero = series.time.zero * record.time_unit.factor
-    inputs, told = _inputs(series, record, record.t - zero)  # also where no signal has a value
-    gaps = [
-        remark
-        for name in series.inputs
-        for remark in input_remarks(name, record.t, record.columns[f"input {name}"])
-    ]
+    whole = record  # an input is known also where no signal has a value
+    inputs, told = _inputs(series, whole, whole.t - zero)
     record = _known(series, record)
     rows = _window(series, record, ends)
     if len(rows) < len(record.t):
@@ -137,6 +133,12 @@ def _measured(
     used = record.t[rows]
     few = np.sum((read.t >= used[0]) & (read.t <= used[-1])) < 3
     seen = read if few else read.trim(used[0], used[-1])
+    inside = (whole.t >= used[0]) & (whole.t <= used[-1])
+    gaps = [
+        remark
+        for name in series.inputs
+        for remark in input_remarks(name, whole.t[inside], whole.columns[f"input {name}"][inside])
+    ]
     start = {
         name: None if value is None else evaluate(value.formula, values) * value.factor
         for name, value in series.start.items()
