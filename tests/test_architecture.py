@@ -36,7 +36,17 @@ ROOMS = [
 ]
 ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "view", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
-STAGES = ["thresholds", "options", "found", "candidates", "units", "trials", "check", "screen"]
+STAGES = [
+    "data_thresholds",
+    "thresholds",
+    "options",
+    "found",
+    "candidates",
+    "units",
+    "trials",
+    "check",
+    "screen",
+]
 STAGES += ["missing", "search", "choose", "experiment", "results", "saved", "trace"]
 # A room is used by the others through its face, what its `__init__` names. These pairs take more,
 # as often as said; a pair that is not here takes nothing more. The numbers only fall.

@@ -10,8 +10,8 @@ from tracewire.show.trace_summary import paragraph_of
 from tracewire.show.trace_text import answer_lines
 from tracewire.solve import Held
 from tracewire.trace import Found, trace
+from tracewire.trace.data_thresholds import CheckOptions
 from tracewire.trace.results.held_inputs import describe_held_input
-from tracewire.trace.thresholds import CheckOptions
 
 MOTOR = """
 span: [0, 40]

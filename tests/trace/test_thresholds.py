@@ -20,7 +20,7 @@ from tracewire.trace.trials.data_split import split_data
 
 ROOM = Path(__file__).parents[2] / "solver/tracewire/trace"
 OPTIONS = TraceOptions()
-HOMES = ("options.py", "thresholds.py")
+HOMES = ("options.py", "data_thresholds.py", "thresholds.py")
 ROUNDING = 1e-6
 """A number that is not larger than this, or that near to 1, guards against rounding."""
 # the other numbers with a name, none of which a physicist could want to be another one

@@ -1,6 +1,7 @@
 """From a diagram and measured series to the effect that the diagram lacks."""
 
 from tracewire.trace.check.option_checks import check_options
+from tracewire.trace.data_thresholds import CheckOptions, PeriodOptions, SplitOptions
 from tracewire.trace.found import (
     CandidateScore,
     ChannelError,
@@ -25,12 +26,10 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.saved import load, save
 from tracewire.trace.thresholds import (
     CandidateOptions,
-    CheckOptions,
     ExperimentOptions,
     MapOptions,
     ScreenOptions,
     SearchOptions,
-    SplitOptions,
     TrialOptions,
 )
 from tracewire.trace.trace import trace
@@ -62,6 +61,7 @@ __all__ = [
     "Means",
     "Missing",
     "ParameterChange",
+    "PeriodOptions",
     "Power",
     "Remainder",
     "ScreenOptions",

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from tracewire.trace.data_thresholds import CheckOptions, PeriodOptions, SplitOptions
 from tracewire.trace.thresholds import (
     CandidateOptions,
-    CheckOptions,
     ExperimentOptions,
     MapOptions,
     ScreenOptions,
     SearchOptions,
-    SplitOptions,
     TrialOptions,
 )
 
@@ -258,6 +257,7 @@ class TraceOptions:
     """Remarks on models with several effects that predict as well."""
 
     split: SplitOptions = field(default_factory=SplitOptions)
+    period: PeriodOptions = field(default_factory=PeriodOptions)
     check: CheckOptions = field(default_factory=CheckOptions)
     candidate: CandidateOptions = field(default_factory=CandidateOptions)
     trial: TrialOptions = field(default_factory=TrialOptions)

@@ -13,8 +13,9 @@ from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section
-from tracewire.trace.choose.horizons import REST, Horizons, dominant_period, horizons_of, restrict
+from tracewire.trace.choose.horizons import REST, Horizons, horizons_of, restrict
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.trials.period import dominant_period
 
 FREE = ("x", "v")
 OPTIONS = TraceOptions()

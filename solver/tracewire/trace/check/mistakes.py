@@ -15,7 +15,7 @@ from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity
 from tracewire.residual import Measured, Section, channel_noise, cut_windows, with_past
 from tracewire.solve import values_at, with_points
-from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.data_thresholds import CheckOptions
 from tracewire.trace.trials.trial import TraceProblem
 
 Vector = NDArray[np.float64]

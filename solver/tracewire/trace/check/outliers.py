@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Measured
-from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.data_thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -11,7 +11,7 @@ from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
 from tracewire.formula import Name
 from tracewire.residual import Measured, noise_level
-from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.data_thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
 FACTORS = {

@@ -14,7 +14,7 @@ from tracewire.library import Block
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.signal_scales import Trajectory
-from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.data_thresholds import CheckOptions
 
 PITCH = "pitch"
 

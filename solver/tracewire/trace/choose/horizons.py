@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from tracewire.compile import Model
 from tracewire.residual import Section, Segment, cut_windows, edges_within
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.data_split import samples_in_turn
+from tracewire.trace.trials.period import period_of
 
 Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -180,37 +180,6 @@ def horizons_of(
         _folds(pieces, options),
         interval,
     )
-
-
-def period_of(model: Model, section: Section, options: TraceOptions) -> float:
-    """The samples of a period: the dominant one, or a turn of what goes round."""
-    turns = [samples_in_turn(model, n, section.measured, options) for n in section.measured.values]
-    return min(dominant_period(section), float(np.median(turns)))
-
-
-def dominant_period(section: Section) -> float:
-    """The period in samples that halves the power of the measured signals, the median over them;
-    infinite where most of the power has a period longer than half the record."""
-    found = [
-        _median_period(values[section.first : section.end])
-        for values in section.measured.values.values()
-    ]
-    return float(np.median(found))
-
-
-def _median_period(values: Vector) -> float:
-    count = len(values)
-    if count < 8:
-        return float("inf")
-    slope = np.linspace(-0.5, 0.5, count)
-    basis = np.column_stack((np.ones(count), slope))
-    left = values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0]
-    power = np.abs(np.fft.rfft(left * np.hanning(count))) ** 2
-    power[0] = 0.0
-    if not power.sum() > 0:
-        return float("inf")
-    line = int(np.searchsorted(np.cumsum(power), 0.5 * power.sum()))
-    return count / line if line > 2 else float("inf")
 
 
 def _pieces(section: Section, block: int) -> list[Section]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from tracewire.residual import Measured, looks_held
 from tracewire.solve import Held
-from tracewire.trace.thresholds import CheckOptions
+from tracewire.trace.data_thresholds import CheckOptions
 
 
 def describe_held_input(

@@ -11,8 +11,9 @@ from tracewire.compile import Model
 from tracewire.data import usual_range
 from tracewire.errors import DataError, Problem
 from tracewire.residual import Measured, Section, Segment, cut_windows
+from tracewire.trace.data_thresholds import SplitOptions
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.thresholds import SplitOptions
+from tracewire.trace.trials.period import passing_period
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,32 +120,16 @@ def shortest_window(model: Model, data_split: DataSplit, options: TraceOptions) 
     """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
 
     A series without a period, as of a falling body, has no phase that a long run could lose: it is
-    one window. What goes round many times has a turn for its period.
+    one window. What goes round many times has a turn for its period, and what moves on and comes
+    back many times about a line, as a body that sticks and slips, the period about that line.
     """
     split, lengths = options.split, list[float]()
     for section in data_split.train:
-        for name, values in section.measured.values.items():
-            y = values[section.first : section.end]
-            centred = y - np.mean(y)
-            crossings = int(np.sum(np.diff(np.signbit(centred))))
-            period = 2 * len(y) / crossings if crossings > 1 else split.in_a_period * len(y)
-            turn = samples_in_turn(model, name, section.measured, options)
-            lengths.append(min(period, turn))
+        for name in section.measured.values:
+            period = passing_period(model, name, section, options)
+            lengths.append(min(period, split.in_a_period * section.count))
     longest = max(data_split.longest, split.shortest)
     return int(np.clip(np.median(lengths) / split.in_a_period, split.shortest, longest))
-
-
-def samples_in_turn(model: Model, signal: str, measured: Measured, options: TraceOptions) -> float:
-    """The samples in which an angle, or what a rate in rad/s adds up to, goes once round, the mean
-    over a series; infinite where it does not go round many times, or too fast to see a turn."""
-    t, values, unit = measured.t, measured.values[signal], model.flat.units.get(signal)
-    if unit == "rad/s":
-        values = np.cumsum(values * np.gradient(t))
-    turns = float(np.ptp(values)) / (2 * np.pi)
-    if unit not in ("rad", "rad/s") or turns < options.check.turns:
-        return float("inf")
-    samples = len(values) / turns
-    return samples if samples >= options.split.shortest else float("inf")
 
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
