@@ -86,7 +86,8 @@ def test_a_torque_in_newton_metres_is_no_number_of_metres(tmp_path: Path) -> Non
     ("header", "options", "said"),
     [
         ("t,angle [deg]", {"units": {"theta": "rad"}}, "'theta' is declared in 'rad', and in "
-         "'deg' by its header in 'run.csv'. Correct the one that is wrong."),
+         "'deg' by its header in 'run.csv'. Correct the one that is wrong; without `unit:` that of "
+         "the header holds."),
         ("t,angle [m]", {"units": {"theta": "rad"}}, "'theta' is declared in 'rad', and in "
          "'m' by its header"),
         ("t [s],angle", {"time_unit": "ms"}, "the time is declared in 'ms', and in 's' by"),

@@ -284,14 +284,14 @@ class _Said:
             text = header if declared is None else declared
             if declared is None and by_header.factor != 1.0:
                 name = what.strip("'").removeprefix("the ")
-                shown = by_header.text or "a plain number"
+                shown = by_header.text or f"plain numbers (1 {header} is {by_header.factor:g})"
                 self.steps.append(f"{name}: from {header} to {shown}, as the header says")
         unit = read_unit(text, self.place)
         if by_header is not None and (
             by_header.factor != unit.factor or not same_quantity(header, text)
         ):
             problem = f"{what} is declared in '{text}', and in '{header}' by its header"
-            hint = "Correct the one that is wrong."
+            hint = "Correct the one that is wrong; without `unit:` that of the header holds."
             self.problems.append(Problem(f"{problem} in '{self.file}'", self.place, hint=hint))
         elif default and not same_quantity(text, default):
             problem = f"{what} of '{self.file}' is in '{text}', which is no unit of time"

@@ -27,6 +27,7 @@ from tracewire.fit.refusals import (
 )
 from tracewire.fit.remarks import (
     ENDED,
+    begins_fast,
     collect_remarks,
     raises_unseen,
     rises,
@@ -205,6 +206,7 @@ def fit(
             *short,
             *rises(criterion_before, value, method),
             *starts_elsewhere(model, series, shown),
+            *begins_fast(model, series, found_starts),
             *raises_unseen(shown, method),
             *weighing_words(model, sigma),
             *collect_remarks(series, failures, last),

@@ -189,6 +189,9 @@ class DiagnosisLimits:
     """... and so many combinations of these."""
     elsewhere: Final[float] = 0.2
     """Of the range of a measured state: a first sample so far from the run's is another start."""
+    fast: Final[float] = 3.0
+    """The size of a fitted start rate, in the fastest rate between two samples of what it is the
+    rate of, from which on no record shows such a start."""
     raised: Final[float] = 1.05
     """By what factor the error of a series that was not fitted rises at least to be told."""
     promised: Final[float] = 0.9

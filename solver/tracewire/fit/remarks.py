@@ -11,6 +11,7 @@ from tracewire.compile import Model
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
+from tracewire.formula import Name
 from tracewire.residual import Criterion, Measured
 
 Vector = NDArray[np.float64]
@@ -112,6 +113,27 @@ def starts_elsewhere(
                 f"{simulated:.4g} there (SI): where that is another start, say "
                 f"start: {{{c.signal}: free}}"
             )
+    return found
+
+
+def begins_fast(
+    model: Model, series: Sequence[Measured], starts: Mapping[str, Mapping[str, float]]
+) -> list[str]:
+    """Fitted starts of rates that are far above the rates that the record shows."""
+    found = []
+    for m in series:
+        for state in model.flat.states:
+            rate = state.rate.name if isinstance(state.rate, Name) else ""
+            start = starts.get(m.name, {}).get(rate, 0.0)
+            if not start or state.name not in m.values:
+                continue
+            fastest = float(np.max(np.abs(np.diff(m.values[state.name]) / np.diff(m.t))))
+            if abs(start) > DIAGNOSIS.fast * fastest:
+                found.append(
+                    f"{m.name}: the fit lets {rate} begin at {start:.3g} (SI), and {state.name} "
+                    f"is never faster than {fastest:.3g} between two samples: fix it (`start: "
+                    f"{{{rate}: 0}}` where it rests), or look at what sits on its bound"
+                )
     return found
 
 

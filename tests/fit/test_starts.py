@@ -1,0 +1,29 @@
+"""Fitted starts that no record shows are told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from oracles.oscillator import DIAGRAM
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.fit.remarks import begins_fast
+from tracewire.residual import Measured
+
+T = np.arange(0.0, 3.0, 0.05)
+RUN = Measured("run", "train", T, {"x": np.sin(2.0 * T)}, start={"x": None, "v": None})
+
+
+@pytest.mark.parametrize("start", [-9.0, 9.0])
+def test_a_start_rate_far_above_those_of_the_record_is_told(start: float) -> None:
+    (told,) = begins_fast(compile(read_text(DIAGRAM)), [RUN], {"run": {"x": 0.0, "v": start}})
+    assert told == (
+        f"run: the fit lets v begin at {start:.3g} (SI), and x is never faster than 2 between two "
+        "samples: fix it (`start: {v: 0}` where it rests), or look at what sits on its bound"
+    )
+
+
+@pytest.mark.parametrize("starts", [{}, {"run": {}}, {"run": {"x": 100.0, "v": 3.0}}])
+def test_other_starts_are_not(starts: dict[str, dict[str, float]]) -> None:
+    model = compile(read_text(DIAGRAM))
+    assert begins_fast(model, [RUN], starts) == []
