@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from solve.models import one, run
 
@@ -92,3 +93,23 @@ blocks:
     assert result["s"].tolist() == [0.0, -1.0]
     [event] = result.events
     assert (event.time, event.kind, event.direction) == (1.0, "crossing", "down")
+
+
+@pytest.mark.parametrize("wall", [-0.01142398623003368, 1e-3, 3.0])
+@pytest.mark.parametrize("ulps", [-2, -1, 0, 1, 2, 3])
+@pytest.mark.parametrize("inside", ["sqrt({w} - x)", "({w} - x)**1.5"])
+@pytest.mark.parametrize("form", ["{f} if x <= {w} else 0", "{f} if {w} >= x else 0"])
+def test_a_start_on_the_edge_of_a_domain_but_for_rounding(
+    form: str, inside: str, ulps: int, wall: float
+) -> None:
+    """The mode is that to come; its formula is defined below the wall alone."""
+    start = wall
+    for _ in range(abs(ulps)):
+        start = float(np.nextafter(start, np.inf if ulps > 0 else -np.inf))
+    formula = form.format(f=inside.format(w=repr(wall)), w=repr(wall))
+    text = one("-1", start, f"  y: {{type: expression, formula: {formula}}}")
+    text += "  z: {type: integrator, of: y}\n"
+    result = run(text, span=(0.0, 0.01), record=("x", "z"))
+    assert result["x"][-1] == pytest.approx(wall - 0.01, abs=1e-12)
+    exact = 2 / 3 * 0.01**1.5 if "sqrt" in inside else 0.4 * 0.01**2.5
+    assert result["z"][-1] == pytest.approx(exact, rel=1e-4)

@@ -79,7 +79,7 @@ from tracewire.solve.core.methods import (
 from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
-from tracewire.solve.core.start import begin
+from tracewire.solve.core.start import begin, reach_sides
 from tracewire.solve.core.stiffness import choose, watch_stiffness
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.transition import happen, no_crossings
@@ -125,7 +125,7 @@ def advance(core: int) -> int:
         ints[STAGE] = 1
         rate = trial_of(core).rate
         rates(core, now[T], x, rate)
-        if not np.all(np.isfinite(rate)):
+        if not np.all(np.isfinite(rate)) and not reach_sides(core, now[T], x):
             return UNDEFINED
     budget = ints[STEPS] + ints[BUDGET]
     while now[T] < now[END]:
@@ -359,6 +359,8 @@ def _undefined(core: int) -> int:
     the root of `-h` is below h = 0: no step leads there.
     """
     progress, watched, x = progress_of(core), watch_of(core), progress_of(core).x
+    if not np.all(np.isfinite(trial_of(core).rate)) and reach_sides(core, progress.now[T], x):
+        return FINISHED
     reach = NEAR * locate.smallest_step(core)
     if locate.reached(core, progress.now[T], x, reach, watched.hit) == 0:
         return UNDEFINED

@@ -1,4 +1,4 @@
-"""The modes at the start of a run, and the clocks that are due there."""
+"""The modes at the start of a run, the clocks that are due there, and its first rates."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ import numpy as np
 from tracewire.solve.core import schedule
 from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, progress_of
 from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
-from tracewire.solve.core.flow import FREE, TIMED, evaluate
+from tracewire.solve.core.flow import FREE, TIMED, evaluate, rates
 from tracewire.solve.core.modes import NOISE, levels, mode_value
-from tracewire.solve.core.readings import guard_values
+from tracewire.solve.core.readings import guard_rates, guard_values
 from tracewire.solve.core.settle import settle
 from tracewire.solve.core.transition import happen, no_crossings
 from tracewire.solve.core.units import unit
@@ -69,3 +69,34 @@ def _overlooked(core: int, t: float, x: Vector) -> None:
         way = UP if flow.m[i] > 0.5 else DOWN
         if abs(guards[i]) <= level[i] and plan.resets[reset, 1] == way:
             progress.overlooked[reset] = 1
+
+
+@unit
+def reach_sides(core: int, t: float, x: Vector) -> bool:
+    """Move the states by less than rounding, to those sides of guards that their modes have taken;
+    whether there were any.
+
+    A guard within its noise counts as zero, and its mode is that to come. The formula of that mode
+    need not be defined where the guard is, as that of a root of `-h` is not at h = 1e-18.
+    """
+    flow, plan = flow_of(core), plan_of(core)
+    modes, far = len(plan.kind), 0.0
+    numbers, taken = np.empty((3, modes)), flow.m.copy()
+    guards, level, along = numbers[0], numbers[1], numbers[2]
+    guard_values(core, t, x, guards)
+    levels(core, t, x, level)
+    for i in range(modes):
+        if plan.kind[i] == SIGN and flow.bound[i] == FREE and abs(guards[i]) <= level[i]:
+            flow.m[i] = mode_value(core, i, guards[i])
+    rate = np.empty(len(x))
+    rates(core, t, x, rate)
+    guard_rates(core, t, x, along)
+    for i in range(modes):
+        if flow.m[i] != taken[i] and along[i] != 0.0:
+            far = max(far, 2.0 * abs(guards[i] / along[i]))
+        flow.m[i] = taken[i]
+    if far == 0.0 or not np.all(np.isfinite(rate)):
+        return False
+    for j in range(len(x)):
+        x[j] += far * rate[j]
+    return True

@@ -358,8 +358,15 @@ def _describe_refinement(prediction: Prediction) -> list[str]:
 
 
 def residual_map(search: Search, trial: Trial) -> tuple[tuple[Dependence, ...], Missing | None]:
-    """Where and on what the residual of a trial depends, in its windows."""
-    return map_dependence(search.linearise(trial), trial, search.places)
+    """Where and on what the residual of a trial depends, in its windows; on nothing that is known
+    where it does not run with its places open, which is told."""
+    try:
+        along = search.linearise(trial)
+    except FitError as error:
+        what = error.problems[0].what
+        search.words.append(f"where and on what the rest depends was not looked at: {what}")
+        return (), None
+    return map_dependence(along, trial, search.places)
 
 
 def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
