@@ -40,7 +40,7 @@ def main() -> int:
         "A time is the least of several runs, taken in turn; ratios are of the same session. "
         "What a trace finds is another bench: python -m benchmarks tracing --help, "
         "on measured records: python -m benchmarks tracing-real --help, "
-        "and on a hundred and four rigs with hidden effects: python -m benchmarks rigs --help. "
+        "and on a hundred and seven rigs with hidden effects: python -m benchmarks rigs --help. "
         "How fast the live page follows: python -m benchmarks view --help.",
     )
     parser.add_argument("case", nargs="*", help=f"of {', '.join(CASES)}; all if none is named")

@@ -1,4 +1,4 @@
-"""Records of a hundred and four labs and machines, with effects that their diagrams lack.
+"""Records of a hundred and seven labs and machines, with effects that their diagrams lack.
 
 An integrator that shares nothing with the product makes them. `python -m benchmarks rigs`.
 """

@@ -51,6 +51,8 @@
 - r106_grindstone: a heavy side pulls once a turn. Speeds of a decay go up and down with it, which
   no friction does. The rock to and fro at the end shows where it hangs. A strap rubs over half a
   turn: a friction of the same kind of place, and a small one.
+- r107_sledge: dry friction has more of it near rest. It sticks and slips: what falls with the rate
+  makes the slips long. The boards under it rub unevenly, by 3 %.
 """
 
 from __future__ import annotations
@@ -204,5 +206,12 @@ NINETIES: Mapping[str, Truth] = {
         words="a heavy side; a strap that rubs over half a turn with 4 % of that besides",
         bounds={("cogging @ acceleration", "pitch"): (6.2, 6.36)},
         besides=("position_friction @ acceleration", "cogging @ acceleration"),
+    ),
+    "r107_sledge": Truth(
+        "Sledge behind a spring",
+        hidden=("stribeck @ forces",),
+        sizes={"stribeck.level": 1.4, "stribeck.speed": 0.016},
+        words="boards that rub unevenly by 3 % besides",
+        besides=("position_friction @ forces", "cogging @ forces"),
     ),
 }

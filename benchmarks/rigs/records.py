@@ -150,6 +150,7 @@ RECORDS: Mapping[str, Callable[[], Record]] = {
     "r104_four": waters.four,
     "r105_plate": boards.plate,
     "r106_grindstone": decays.grindstone,
+    "r107_sledge": rubbing.sledge,
 }
 
 

@@ -1,4 +1,4 @@
-"""Records of what rubs: a stage on crossed rollers, a block on a belt and the slide of a lathe."""
+"""Records of what rubs: a stage on rollers, a block on a belt, the slide of a lathe, a sledge."""
 
 from __future__ import annotations
 
@@ -119,3 +119,43 @@ def slide_run(random: np.random.Generator, run: int) -> list[Any]:
     read = y[:, 0] * 1e6 + correlated(random, samples, interval, 0.05, 0.5)
     read = read + random.normal(size=samples) * 0.6
     return [[run] * samples, t[:samples], log, rounded(read, 1)]
+
+
+def sledge() -> Record:
+    """A sledge that a winch pulls through a spring, three runs; hidden: it rubs more near rest."""
+    random = np.random.default_rng(1107)
+    columns: list[list[Any]] = [[] for _ in range(4)]
+    for run, samples in enumerate((2600, 2200, 2400), 1):
+        append(columns, sledge_run(random, run, samples))
+    return Record(("run", "t_s", "winch_mm", "sledge_mm"), ("%d", "%.2f", "%.1f", "%.1f"), columns)
+
+
+def sledge_run(random: np.random.Generator, run: int, samples: int) -> list[Any]:
+    """The columns at 100 Hz; the winch changes its speed, stands and turns, and the boards under
+    the sledge are not alike."""
+    m, k, c, dry, more, speed, boards, board = 2.1, 165.0, 3.5, 2.6, 1.4, 0.016, 0.07, 0.21
+    interval, pace = 0.01, 0.035
+    speeds = pace * random.choice([-1.2, -0.7, 0.0, 0.5, 0.8, 1.3], size=samples // 250 + 2)
+    speeds[0] = pace * (1 if run < 3 else -1)
+    winch = np.append(0.0, np.cumsum(np.repeat(speeds, 250)[:samples]) * interval)
+    at = random.uniform(0, 2 * math.pi)
+
+    def field(t: float, y: State) -> list[float]:
+        sample = min(int(t / interval + 1e-9), samples - 1)
+        end = winch[sample] + (winch[sample + 1] - winch[sample]) * (t / interval - sample)
+        return [y[1], (k * (end - y[0]) - c * y[1]) / m]
+
+    def levels(t: float, y: State) -> tuple[float, float]:
+        uneven = boards * math.sin(2 * math.pi * y[0] / board + at)
+        level = (dry + more * math.exp(-((y[1] / speed) ** 2)) + uneven) / m
+        return level, level
+
+    y = march_dry(field, levels, 1, [0.0, 0.0], interval, samples, 10)
+    read = y[:, 0] * 1e3 + correlated(random, samples, interval, 0.05, 0.05)
+    read = read + random.normal(size=samples) * 0.05
+    return [
+        [run] * samples,
+        np.arange(samples) * interval,
+        winch[:samples] * 1e3,
+        rounded(read, 0.1),
+    ]

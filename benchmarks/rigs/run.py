@@ -31,7 +31,7 @@ def main(arguments: Sequence[str]) -> int:
     """Parse the options, generate what matches, trace each in a process, print a line each."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks rigs",
-        description="Does a trace find what is hidden in records of a hundred and four labs and "
+        description="Does a trace find what is hidden in records of a hundred and seven labs and "
         "machines? One core a rig. right: what is hidden and nothing else; with more: "
         "others besides.",
     )

@@ -205,6 +205,34 @@ def test_an_effect_with_a_shape_on_its_upper_bound_stands_for_another_law(
     assert found == (words if told else "")
 
 
+@pytest.mark.parametrize(
+    ("short", "long", "explained", "told"),
+    [
+        ((20.0, 0.96), (60.0, 0.5), 0.8, "96.0 %"),
+        ((20.0, 0.86), (60.0, 0.98), 0.8, "98.0 %"),
+        ((20.0, 0.86), (60.0, 0.96), 0.8, ""),  # a map of long windows has more freedom
+        ((1.1, 1.0), (3.0, 0.9), 0.8, "90.0 %"),  # down to the noise
+        ((1.1, 1.0), (1.9, 1.0), 0.8, ""),  # too little is left
+        ((20.0, 0.96), (60.0, 0.98), 0.95, ""),  # enough is explained
+    ],
+)
+def test_effects_that_leave_a_law_behind_are_not_named(
+    short: tuple[float, float], long: tuple[float, float], explained: float, told: str
+) -> None:
+    both = short, long
+    trials: Any = [SimpleNamespace(reduced_chi2=chi2) for chi2, _ in both]
+    shares: Any = [
+        [
+            SimpleNamespace(place="force", variables=("t",), share=1.0),
+            SimpleNamespace(place="force", variables=("q", "v"), share=share),
+        ]
+        for _, share in both
+    ]
+    found = verdict._describe_law_left(trials, shares, explained, TraceOptions())
+    rest = f"leaves a law of no block's form: {told} of the rest is a function of q and v at force"
+    assert found == (rest if told else "")
+
+
 @pytest.mark.parametrize(("cost", "words"), [(0.5, "65 % more"), (-0.5, "39 % less")])
 def test_how_much_more_or_less_another_model_leaves(cost: float, words: str) -> None:
     assert verdict._as_good_words({"bias @ force"}, cost, 1) == (

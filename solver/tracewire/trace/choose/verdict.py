@@ -196,7 +196,8 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
     else:
         law = ""
         if search.has_revisits:  # else all that is left is a function of the one way
-            law = _describe_law_left(chosen.trials[0], maps[0][0], share.share, options)
+            shares = [shares for shares, _ in maps]
+            law = _describe_law_left(chosen.trials, shares, share.share, options)
         short = law or _describe_shortfall(prediction, share.share, share.share - error)
         if _only_uncommon(chosen, options):
             short = "stands for a law of another form: it has waves, drifts and their kin alone"
@@ -377,22 +378,32 @@ def _left(trial: Trial, shares: Sequence[Dependence]) -> float:
 
 
 def _describe_law_left(
-    trial: Trial, shares: Sequence[Dependence], explained: float, options: TraceOptions
+    trials: Sequence[Trial],
+    shares: Sequence[Sequence[Dependence]],
+    explained: float,
+    options: TraceOptions,
 ) -> str:
-    """In words, the law that the named effects leave behind where they explain too little: a smooth
-    function at one place that takes the rest down to the noise, or nearly all of it. A function of
-    time alone is no law: gusts, and the air of a room, do not come again."""
-    laws = [d for d in shares if d.variables != ("t",)]
-    best = max(laws, key=lambda d: d.share, default=None)
-    if best is None or trial.reduced_chi2 < options.law_from or explained >= options.law_below:
+    """In words, the law that the named effects leave behind at one of the horizons, where they
+    explain too little: a smooth function at one place that takes the rest down to the noise, or
+    nearly all of it. A function of time alone is no law: gusts, and the air of a room, do not come
+    again."""
+    if explained >= options.law_below:
         return ""
-    left = 1 + (1 - best.share) * (trial.reduced_chi2 - 1)
-    if left > options.at_noise and best.share < options.law_share:
-        return ""
-    part, of = f"{100 * best.share:.1f} %", " and ".join(best.variables)
-    return (
-        f"leaves a law of no block's form: {part} of the rest is a function of {of} at {best.place}"
-    )
+    from_shares = options.law_share, options.law_share_long
+    for trial, found, from_share in zip(trials, shares, from_shares, strict=False):
+        laws = [d for d in found if d.variables != ("t",)]
+        best = max(laws, key=lambda d: d.share, default=None)
+        if best is None or trial.reduced_chi2 < options.law_from:
+            continue
+        left = 1 + (1 - best.share) * (trial.reduced_chi2 - 1)
+        if left > options.at_noise and best.share < from_share:
+            continue
+        part, of = f"{100 * best.share:.1f} %", " and ".join(best.variables)
+        return (
+            f"leaves a law of no block's form: {part} of the rest is a function of {of} at "
+            f"{best.place}"
+        )
+    return ""
 
 
 def _gate_mean_square(search: Search, best: Trial) -> float:
