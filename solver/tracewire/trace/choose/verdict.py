@@ -266,7 +266,8 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
     before was refused for that; what was refused goes into the search's words."""
     reason = ""
     refused: list[frozenset[str]] = []
-    lengths = [horizon.length for horizon in prediction.horizons.each]
+    horizons = {horizon.length for horizon in prediction.horizons.each}
+    lengths = sorted({min(search.short_length, max(horizons)), *horizons})  # as `safeguard` asks
     while prediction.choice.sure and len(refused) < search.options.refused:
         declared, chosen = (model.trials[-1] for model in (prediction.models[0], prediction.chosen))
         harm = raises_unseen(search, declared, chosen, lengths)
