@@ -61,9 +61,9 @@ def test_moves_do_not_depend_on_units(size: float, zero: float) -> None:
     assert between_moves(size * (stairs() + zero)) == pytest.approx(between_moves(stairs()))
 
 
-def periods(y: Vector, signal: str = "x", unit: str = "m") -> tuple[float, float]:
+def periods(y: Vector, signal: str = "x", diagram: str = DIAGRAM) -> tuple[float, float]:
     """Of a signal of the oscillator: by passages, and the dominant one."""
-    model = compile(read_text(DIAGRAM.replace("unit: m}", f"unit: {unit}}}")))
+    model = compile(read_text(diagram))
     section = Section(Measured("run", "train", T[: len(y)], {signal: y}), 0, len(y))
     return passing_period(model, signal, section, OPTIONS), period_of(model, section, OPTIONS)
 
@@ -72,6 +72,13 @@ def test_the_moves_of_a_body_are_its_period() -> None:
     assert periods(stairs()) == pytest.approx((100, 100), rel=0.06)
     back = np.concatenate((stairs(1000), stairs(1000)[::-1]))
     assert periods(back)[0] == pytest.approx(100, rel=0.06)
+
+
+def test_moves_without_a_spring_are_no_period() -> None:
+    """A motor that pulses drive on and on: its runs lose no phase."""
+    free = DIAGRAM.replace("{type: gain, of: x, k: -k}", "{type: gain, of: v, k: -k}")
+    assert free != DIAGRAM
+    assert periods(stairs(), diagram=free)[0] == math.inf
 
 
 def test_a_level_that_rises_in_steps_has_no_period() -> None:

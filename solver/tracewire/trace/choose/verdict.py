@@ -266,14 +266,18 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
     before was refused for that; what was refused goes into the search's words."""
     reason = ""
     refused: list[frozenset[str]] = []
-    horizons = {horizon.length for horizon in prediction.horizons.each}
-    lengths = sorted({min(search.short_length, max(horizons)), *horizons})  # as `safeguard` asks
+    lengths = [horizon.length for horizon in prediction.horizons.each]
     while prediction.choice.sure and len(refused) < search.options.refused:
         declared, chosen = (model.trials[-1] for model in (prediction.models[0], prediction.chosen))
         harm = raises_unseen(search, declared, chosen, lengths)
         if not harm:
             pruned = prune_by_other_runs(search, prediction)
-            return simplify_by_unseen(search, pruned).preferring_signs(), reason
+            simplest = simplify_by_unseen(search, pruned).preferring_signs()
+            shortest = [min(search.short_length, max(lengths))]  # `safeguard` asks them, too
+            harm = raises_unseen(search, declared, simplest.chosen.trials[-1], shortest)
+            if not harm:
+                return simplest, reason
+            prediction = simplest
         left_out = join_names(prediction.chosen.dropped)
         names = prediction.chosen.names
         what = join_names(names) or f"the model without {left_out}"

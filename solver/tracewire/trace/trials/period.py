@@ -19,8 +19,8 @@ Vector = NDArray[np.float64]
 
 def passing_period(model: Model, signal: str, section: Section, options: TraceOptions) -> float:
     """Twice the mean time between passages of a signal's mean, in samples; infinite where there is
-    at most one. A turn of what goes round is a period, and so is, where a body moves and rests
-    many times between such passages, the time between its moves."""
+    at most one. A turn of what goes round is a period, and so is, where a body on a spring moves
+    and rests many times between such passages, the time between its moves."""
     y = section.measured.values[signal][section.first : section.end]
     crossings = int(np.sum(np.diff(np.signbit(y - np.mean(y)))))
     period = 2 * len(y) / crossings if crossings > 1 else float("inf")
@@ -31,18 +31,23 @@ def passing_period(model: Model, signal: str, section: Section, options: TraceOp
 def _or_between_moves(
     period: float, model: Model, m: Measured, signals: Iterable[str], options: PeriodOptions
 ) -> float:
-    """A period, or the time between moves of what is a place among signals, where many of them are
-    in one period: the median over signals."""
-    places = [name for name in signals if _is_place(model, name)]
+    """A period, or the time between moves of what is a pulled place among signals, where many of
+    them are in one period: the median over signals."""
+    places = [name for name in signals if _is_pulled_place(model, name)]
     times = [time_between_moves(m.values[name], options) for name in places]
     moves = float(np.median(times)) if times else float("inf")
     return moves if options.returns * moves <= period else period
 
 
-def _is_place(model: Model, signal: str) -> bool:
-    """Whether a signal is a state whose rate is a state: where a body is."""
+def _is_pulled_place(model: Model, signal: str) -> bool:
+    """Whether a signal is where a body is, a state whose rate is a state, and the place pulls at
+    some body, as by a spring: only then do runs lose the phase of its moves."""
     rate = next((state.rate for state in model.flat.states if state.name == signal), None)
-    return isinstance(rate, Name) and rate.name in model.states
+    if not isinstance(rate, Name) or rate.name not in model.states:
+        return False
+    low = model.lowered
+    roots = [*low.rates, *(mode.guard for mode in low.modes)]
+    return low.states[model.states.index(signal)] in low.tape.needed(roots)
 
 
 def time_between_moves(y: Vector, options: PeriodOptions) -> float:
