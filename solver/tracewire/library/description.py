@@ -199,7 +199,10 @@ def _effect(block: Block) -> str:
     parts = [f"coefficient {effect.coefficient}, {sign}"]
     if effect.at is not None:
         parts[0] += f", first {_tried(effect.at)}"
-    parts += [f"{port} reads {SYMBOLS[symbol]}" for port, symbol in effect.inputs.items()]
+    read = dict(SYMBOLS)
+    if "q" in effect.lacking:
+        read["v"] = "v of the place, as a level, a temperature or a speed, from its zero on"
+    parts += [f"{port} reads {read[symbol]}" for port, symbol in effect.inputs.items()]
     parts += [f"shape {name} first {_tried(shape)}" for name, shape in effect.shapes.items()]
     parts += [f"{name} is the {of} of the drive in each series" for name, of in effect.tone.items()]
     if effect.lacking:

@@ -26,7 +26,7 @@ SCALES: dict[Scale, str] = {
     "U": "the largest |u| of the drive",
     "T": "the duration of the longest series",
     "dt": "the sample interval",
-    "top": "the largest rate of the place",
+    "top": "the largest v of the place",
     "stroke": "the longest way of the place in one direction",
     "rates": "the rates of the place, by factors: 0 the slowest that is resolved, 1 the fastest",
     "drives": "the sizes of the drive, by factors: 0 the least that it has, 1 the largest",
