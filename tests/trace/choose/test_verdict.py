@@ -233,6 +233,30 @@ def test_effects_that_leave_a_law_behind_are_not_named(
     assert found == (rest if told else "")
 
 
+@pytest.mark.parametrize(
+    ("kinds", "share", "told"),
+    [
+        (["coulomb"], 0.7, ""),
+        (["coulomb"], 0.55, "takes 55 % of the excess error on held-out blocks away"),
+        (
+            ["bias", "parametric"],
+            0.7,
+            "takes 70 % of the excess error on held-out blocks away, and a wave or a drift, which"
+            " follows a part of anything, needs 80%",
+        ),
+        (["cogging"], 0.88, ""),
+    ],
+)
+def test_waves_must_explain_more_than_laws(
+    kinds: list[str], share: float, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    effects = [SimpleNamespace(candidate=SimpleNamespace(effect=kind)) for kind in kinds]
+    trial = SimpleNamespace(effects=effects, reduced_chi2=9.0)
+    chosen: Any = SimpleNamespace(options=TraceOptions(), chosen=SimpleNamespace(trials=[trial]))
+    monkeypatch.setattr(verdict, "error_left", lambda prediction: 0.4)
+    assert verdict._describe_shortfall(chosen, share, share - 0.04) == told
+
+
 @pytest.mark.parametrize(("cost", "words"), [(0.5, "65 % more"), (-0.5, "39 % less")])
 def test_how_much_more_or_less_another_model_leaves(cost: float, words: str) -> None:
     assert verdict._as_good_words({"bias @ force"}, cost, 1) == (

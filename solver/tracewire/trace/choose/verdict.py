@@ -243,11 +243,16 @@ def _describe_shape_on_bound(trial: Trial) -> str:
 def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> str:
     """In words, why the named effects are not enough: they explain too little of the excess error,
     or leave too much of the error on held-out blocks; '' where they are. At the noise of all
-    horizons they explain all there is."""
+    horizons they explain all there is. Waves and drifts follow a part of anything."""
     options, trials = prediction.options, prediction.chosen.trials
     at_all = all(trial.reduced_chi2 <= options.at_noise for trial in trials)
-    if share < options.explained or (surely < options.explained_surely and not at_all):
-        return f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
+    kinds = {effect.candidate.effect for effect in trials[0].effects}
+    uncommon = not kinds.isdisjoint(options.uncommon)
+    least = options.explained_uncommon if uncommon else options.explained
+    if share < least or (surely < options.explained_surely and not at_all):
+        taken = f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
+        waves = f", and a wave or a drift, which follows a part of anything, needs {least:.0%}"
+        return taken + (waves if options.explained <= share < least else "")
     left = error_left(prediction)
     if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
         return ""
