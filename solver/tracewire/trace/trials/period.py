@@ -21,22 +21,27 @@ def passing_period(model: Model, signal: str, section: Section, options: TraceOp
     """Twice the mean time between passages of a signal's mean, in samples; infinite where there is
     at most one. A turn of what goes round is a period, and so is, where a body on a spring moves
     and rests many times between such passages, the time between its moves."""
-    y = section.measured.values[signal][section.first : section.end]
-    crossings = int(np.sum(np.diff(np.signbit(y - np.mean(y)))))
-    period = 2 * len(y) / crossings if crossings > 1 else float("inf")
-    period = _or_between_moves(period, model, section.measured, [signal], options.period)
+    period = _between_passages(section.measured.values[signal][section.first : section.end])
+    period = min(period, _between_moves(model, section.measured, [signal], options.period))
     return min(period, samples_in_turn(model, signal, section.measured, options))
 
 
-def _or_between_moves(
-    period: float, model: Model, m: Measured, signals: Iterable[str], options: PeriodOptions
+def _between_passages(y: Vector) -> float:
+    crossings = int(np.sum(np.diff(np.signbit(y - np.mean(y)))))
+    return 2 * len(y) / crossings if crossings > 1 else float("inf")
+
+
+def _between_moves(
+    model: Model, m: Measured, signals: Iterable[str], options: PeriodOptions
 ) -> float:
-    """A period, or the time between moves of what is a pulled place among signals, where many of
-    them are in one period: the median over signals."""
-    places = [name for name in signals if _is_pulled_place(model, name)]
-    times = [time_between_moves(m.values[name], options) for name in places]
-    moves = float(np.median(times)) if times else float("inf")
-    return moves if options.returns * moves <= period else period
+    """The time between moves of what is a pulled place among signals, the median over signals;
+    infinite where the mean of the record is passed often beside that."""
+    places = [m.values[name] for name in signals if _is_pulled_place(model, name)]
+    if not places:
+        return float("inf")
+    moves = float(np.median([time_between_moves(y, options) for y in places]))
+    passages = float(np.median([_between_passages(y) for y in places]))
+    return moves if options.returns * moves <= passages else float("inf")
 
 
 def _is_pulled_place(model: Model, signal: str) -> bool:
@@ -82,8 +87,8 @@ def period_of(model: Model, section: Section, options: TraceOptions) -> float:
     """The dominant period in samples, the time between many moves, or a turn of what goes round."""
     turns = [samples_in_turn(model, n, section.measured, options) for n in section.measured.values]
     m, period = section.measured, dominant_period(section)
-    period = _or_between_moves(period, model, m, m.values, options.period)
-    return min(period, float(np.median(turns)))
+    moves = _between_moves(model, m, m.values, options.period)
+    return min(period, moves, float(np.median(turns)))
 
 
 def dominant_period(section: Section) -> float:
