@@ -125,9 +125,10 @@ def begins_fast(
         for state in model.flat.states:
             rate = state.rate.name if isinstance(state.rate, Name) else ""
             start = starts.get(m.name, {}).get(rate, 0.0)
-            if not start or state.name not in m.values:
+            if not start or state.name not in m.values or len(m.t) < 2:
                 continue
-            fastest = float(np.max(np.abs(np.diff(m.values[state.name]) / np.diff(m.t))))
+            seen = np.diff(m.values[state.name]) / (m.sensor(state.name).gain or 1.0)
+            fastest = float(np.max(np.abs(seen / np.diff(m.t))))
             if abs(start) > DIAGNOSIS.fast * fastest:
                 found.append(
                     f"{m.name}: the fit lets {rate} begin at {start:.3g} (SI), and {state.name} "

@@ -42,7 +42,8 @@ class PeriodOptions:
     """What counts as a period of a motion that has no frequency of its own."""
 
     returns: float = 5.0
-    """Turns of a shaft, or moves of a body, from which on the time of one is a period."""
+    """Turns of a shaft in a record from which on the time of one is a period; the same of moves of
+    a body, in a record and between two passages of its mean in one direction."""
     speed_steps: int = 400
     """The steps of time in a record over which a speed is taken, at most."""
     speed_doublings: int = 4

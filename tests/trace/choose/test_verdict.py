@@ -242,7 +242,7 @@ def test_effects_that_leave_a_law_behind_are_not_named(
             ["bias", "parametric"],
             0.7,
             "takes 70 % of the excess error on held-out blocks away, and a wave or a drift, which"
-            " follows a part of anything, needs 80%",
+            " follows a part of anything, needs 80 %",
         ),
         (["cogging"], 0.88, ""),
     ],

@@ -251,7 +251,9 @@ def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> 
     least = options.explained_uncommon if uncommon else options.explained
     if share < least or (surely < options.explained_surely and not at_all):
         taken = f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
-        waves = f", and a wave or a drift, which follows a part of anything, needs {least:.0%}"
+        waves = (
+            f", and a wave or a drift, which follows a part of anything, needs {100 * least:.0f} %"
+        )
         return taken + (waves if options.explained <= share < least else "")
     left = error_left(prediction)
     if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
@@ -286,7 +288,9 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
         left_out = join_names(prediction.chosen.dropped)
         names = prediction.chosen.names
         what = join_names(names) or f"the model without {left_out}"
-        search.words.append(f"{what} is not named: it {harm}")
+        told = f"{what} is not named: it {harm}"
+        if told not in search.words:  # what is simplified may come to the same model again
+            search.words.append(told)
         reason = reason or (f"{model_with(names)} {harm}" if names else f"{what} {harm}")
         refused.append(prediction.chosen.names)
         prediction = prediction.choose_again(refused)

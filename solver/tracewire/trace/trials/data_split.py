@@ -120,8 +120,8 @@ def shortest_window(model: Model, data_split: DataSplit, options: TraceOptions) 
     """The samples of the shortest window: about a fifth of the slowest series' period, at least 16.
 
     A series without a period, as of a falling body, has no phase that a long run could lose: it is
-    one window. What goes round many times has a turn for its period, and what moves on and comes
-    back many times about a line, as a body that sticks and slips, the period about that line.
+    one window. What goes round many times has a turn for its period, and a body on a spring that
+    sticks and slips the time between its moves.
     """
     split, lengths = options.split, list[float]()
     for section in data_split.train:
