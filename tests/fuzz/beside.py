@@ -43,12 +43,16 @@ def check_beside(seed: int, tally: Tally) -> None:
     try:
         both = _run(text.replace("blocks:\n", "blocks:\n" + table, 1), method)
     except SimulationError as error:
+        if reason := _unclear(seed):
+            tally.unclear[reason] += 1
+            return
         tally.refused[kind_of(str(error))] += 1
         tally.refusals.append((seed, f"{method}, shift {shift}: {error}"))
         return
     tally.judged += 1
     for name, value in alone.final.items():
-        allowed = AGREES * max(float(np.abs(alone[name]).max()), abs(value))
+        size = max(float(np.abs(alone[name]).max()), abs(value))
+        allowed = AGREES * (max(size, 1.0) if name.startswith("c") else size)  # one count
         off = abs(both.final[name] - value)
         if off > allowed:
             reason = _unclear(seed)

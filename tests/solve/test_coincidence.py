@@ -117,6 +117,50 @@ blocks:
     assert [event.time for event in found.events if event.kind == "stick"] == [1.0]
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("late", [0.0, 1e-13, -1e-13])
+def test_friction_that_reaches_its_limit_for_a_moment_at_a_tick_slips(
+    late: float, method: str
+) -> None:
+    """The push is (1 + 1e-5) - (t - 1 - w)^2 with w^2 = 1e-5: beyond the limit from 1 s on, for
+    6.3 ms. What sliding friction, of 0.9, leaves then moves the body for longer."""
+    found = run(
+        f"""
+span: [0, 1.4]
+blocks:
+  x: {{type: integrator, of: v}}
+  v: {{type: integrator, of: a}}
+  friction: {{type: dry_friction, rate: v, slip: 0.9, stick: 1}}
+  push: {{type: expression, formula: "1.00001 - (t - 1 - sqrt(1e-5))**2"}}
+  a: {{type: sum, of: [friction, push]}}
+{TICKED}
+{TICKS.replace("offset: 1", f"offset: {1 + late!r}")}""",
+        method=method,
+    )
+    left = 0.4 - 1e-5**0.5
+    v = 0.10001 * 0.4 - (left**3 + 1e-5**1.5) / 3
+    assert found.final["v"] == pytest.approx(v, rel=1e-6)
+    assert [event.kind for event in found.events if event.block == "friction"] == ["slip"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_friction_that_reaches_its_limit_at_a_tick_and_stays_there_holds(method: str) -> None:
+    found = run(
+        f"""
+span: [0, 2.5]
+blocks:
+  v: {{type: integrator, of: a}}
+  friction: {{type: dry_friction, rate: v, slip: 0.9, stick: 1}}
+  push: {{type: expression, formula: "t if t < 1 else 1"}}
+  a: {{type: sum, of: [friction, push]}}
+{TICKED}
+{TICKS}""",
+        method=method,
+    )
+    assert found.final["v"] == 0.0
+    assert [event.kind for event in found.events if event.block == "friction"] == []
+
+
 def test_what_fades_crosses_nothing() -> None:
     """exp(-t) falls below all rounding of its start, and never reaches zero."""
     found = run(

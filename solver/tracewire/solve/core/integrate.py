@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from tracewire.solve.core import locate, methods, schedule
+from tracewire.solve.core import locate, methods, polish, schedule
 from tracewire.solve.core.arrays import (
     Vector,
     copy,
@@ -69,7 +69,7 @@ from tracewire.solve.core.history import (
     longest_followed,
     point_to_history,
 )
-from tracewire.solve.core.locate import AT_ONCE, NOTHING, TOO_LONG
+from tracewire.solve.core.locate import AT_ONCE, LEAVES, NOTHING, TOO_LONG
 from tracewire.solve.core.methods import (
     EXPONENT,
     FIXED_STEP,
@@ -184,12 +184,14 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             return status
         method, ratio = ints[CURRENT], now[RATIO]
         end = trial.ends[0] + trial.ends[1]
-        last = end >= limit
+        last = limit - end < locate.smallest_step(core)  # the sum of its start and length rounds
         how = locate.find(core, method, last)
         at_once = how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]
         if at_once or how == TOO_LONG:
             now[H] = trial.ends[1] / 16
             continue
+        if how == LEAVES:
+            return _cross(core, PASSED)
         if how != NOTHING:
             return _crossed(core)
         longest = after
@@ -395,7 +397,7 @@ def _crossed(core: int) -> int:
     watched, crossings = watch_of(core), crossings_of(core)
     now, ints, x, found = progress.now, progress.ints, progress.x, watched.found
     first = int(np.argmin(found))
-    locate.polish(core, found[first], first)
+    polish.polish(core, found[first], first)
     end = trial.ends[0] + trial.ends[1]
     sample_inside(core, ints[CURRENT], end)
     now[T] = end

@@ -24,7 +24,6 @@ from tracewire.solve.core.arrays import (
     watch_of,
 )
 from tracewire.solve.core.codes import (
-    CURRENT,
     DELAY,
     FLOOR,
     FORCE,
@@ -53,7 +52,6 @@ from tracewire.solve.core.quiet import (
     keeps_away,
 )
 from tracewire.solve.core.readings import guard_rates, guard_values
-from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, inlined, unit
 
 CLOSE = 1.0 / 16.0  # of a sample's distance: where a dip is looked at more closely
@@ -61,10 +59,8 @@ ROOT = 1e-14
 CLEARLY = 4.0  # beyond its level, in units of the noise
 MOST_ROUNDS = 200
 SOON = 0.01  # of a step
-POLISH = 3  # corrections of a located instant
-BACK = 1e-4  # of a step: how far back a secant begins
 SHOWS = 100.0  # so many times its noise a guard rises until the first sample, if it does
-NOTHING, INSIDE, AT_ONCE, TOO_LONG = 0, 1, 2, 3
+NOTHING, INSIDE, AT_ONCE, TOO_LONG, LEAVES = range(5)
 
 
 @helper
@@ -218,6 +214,7 @@ def find(core: int, method: int, whole: bool) -> int:
     Fills `found` with theta in (0, 1] for what crosses first, else with infinity, and `rows` with
     all samples of a step that is looked at as a `whole`, or where a margin may cross. AT_ONCE: it
     crosses right where the step begins. TOO_LONG: it rises first and falls before the first sample.
+    LEAVES: what is held is at its limit where the step begins, and then beyond it.
     """
     watched = watch_of(core)
     rows, start, found = watched.rows, watched.start, watched.found
@@ -235,6 +232,9 @@ def find(core: int, method: int, whole: bool) -> int:
         return NOTHING
     floors = np.empty(count)
     _floors(core, floors)
+    how = _leaves(core, method, floors)
+    if how != NOTHING:
+        return how
     if quiet:
         _arm(core, floors)
         return NOTHING
@@ -273,6 +273,45 @@ def find(core: int, method: int, whole: bool) -> int:
         if found[i] - earliest > 4 * ROOT:
             found[i] = np.inf
     return INSIDE
+
+
+@unit
+def _leaves(core: int, method: int, floors: Vector) -> int:
+    """Whether what is held begins at its limit, as where an earlier step has ended at a known time,
+    and is beyond it right after. Of a force that is so for a part of a step no sample may tell.
+
+    LEAVES: it is at its limit or just beyond; marked in `hit`. TOO_LONG: it reaches it so early
+    that no sample is beyond it; where one is, it is armed, to be located.
+    """
+    watched, how = watch_of(core), NOTHING
+    values = np.empty(len(watched.mode))
+    watched.hit[:] = 0
+    for i in range(len(floors)):
+        start, floor = watched.start[i], floors[i]
+        if watched.kind[i] == GUARD or watched.armed[i] or start > floor:
+            continue
+        beyond = _first_beyond(core, method, i, floor, values)
+        if beyond <= 1.0 and start <= 0.0:
+            watched.hit[i], how = 1, LEAVES
+        elif beyond < 1.0 / (SAMPLES - 1):
+            how = max(how, TOO_LONG)
+        elif beyond <= 1.0:
+            watched.armed[i] = 1
+    return how
+
+
+@helper
+def _first_beyond(core: int, method: int, item: int, floor: float, values: Vector) -> float:
+    """Where in the step a margin that begins at zero is first seen below, before it has risen."""
+    least, theta = min(watch_of(core).start[item], 0.0) - floor, CLOSE**3
+    while theta <= 1.0:
+        _margins_inside(core, method, theta, values)
+        if values[item] > floor:
+            return np.inf
+        if values[item] < least:
+            return theta
+        theta *= 4.0
+    return np.inf
 
 
 @helper
@@ -419,81 +458,3 @@ def smallest_step(core: int) -> float:
     progress = progress_of(core)
     t = abs(progress.now[T])
     return max(1e-15 * progress.now[LENGTH], 16 * (np.nextafter(t, np.inf) - t))
-
-
-@unit
-def polish(core: int, theta: float, row: int) -> None:
-    """Make the trial end at the crossing: located on the polynomial, then on a true step, whose end
-    is moved where that is by little.
-
-    At a guard it ends on the far side, where the formula of the mode to come is defined. The end
-    of a slide or of a contact is where its fraction or force is zero, but for rounding: how far a
-    rate is from zero there decides other modes. All is read where the end lies on the surfaces of
-    slides and contacts: there the run goes on.
-    """
-    flow = flow_of(core)
-    progress = progress_of(core)
-    trial = trial_of(core)
-    watched = watch_of(core)
-    t, x, whole = trial.ends[0], progress.x, trial.ends[1]
-    method, i = progress.ints[CURRENT], watched.mode[row]
-    h = max(theta * whole, smallest_step(core))
-    methods.end_at(core, method, t, x, trial.rate, h)
-    if not np.all(np.isfinite(trial.x_end)):
-        return
-    if watched.kind[row] != GUARD:
-        _polish_end(core, h, whole, row)
-        return
-    guards, along = np.empty(len(flow.bound)), np.empty(len(flow.bound))
-    pinned = np.empty(len(x))
-    for _ in range(POLISH):
-        _end(core, t + h, pinned)
-        guard_values(core, t + h, pinned, guards)
-        guard_rates(core, t + h, pinned, along)
-        change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
-        if not 0 < h + change <= whole:
-            return
-        if abs(change) <= 1e-14 * progress.now[LENGTH]:
-            if change > 0.0 and h + 2 * change <= whole:
-                methods.end_at(core, method, t, x, trial.rate, h + 2 * change)
-            return
-        if abs(change) > 0.1 * whole:
-            return
-        h += change
-        methods.end_at(core, method, t, x, trial.rate, h)
-
-
-@unit
-def _polish_end(core: int, h: float, whole: float, row: int) -> None:
-    """Make the trial end where the margin of a slide or a contact is zero: secants over steps."""
-    progress, trial = progress_of(core), trial_of(core)
-    t, x, method = trial.ends[0], progress.x, progress.ints[CURRENT]
-    values, pinned = np.empty(len(watch_of(core).mode)), np.empty(len(x))
-    _end(core, t + h, pinned)
-    margins(core, t + h, pinned, values)
-    here, at, other = values[row], h, h * (1.0 - BACK)
-    methods.end_at(core, method, t, x, trial.rate, other)
-    _end(core, t + other, pinned)
-    margins(core, t + other, pinned, values)
-    there = values[row]
-    for _ in range(POLISH):
-        change = -here * (at - other) / (here - there) if here != there else 0.0
-        if not (0.0 < at + change <= whole and abs(change) <= 0.1 * whole):
-            break
-        there, other = here, at
-        at += change
-        methods.end_at(core, method, t, x, trial.rate, at)
-        if abs(change) <= ROOT * progress.now[LENGTH]:
-            return
-        _end(core, t + at, pinned)
-        margins(core, t + at, pinned, values)
-        here = values[row]
-    methods.end_at(core, method, t, x, trial.rate, at)
-
-
-@helper
-def _end(core: int, t: float, out: Vector) -> None:
-    """Where the trial ends, back on the surfaces that hold the run."""
-    copy(trial_of(core).x_end, out)
-    if flow_of(core).counts[SLIDING] + flow_of(core).counts[RESTING]:
-        pin(core, t, out)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.solve.core.arrays import flow_of, plan_of, trial_of, watch_of
-from tracewire.solve.core.codes import FRACTION
+from tracewire.solve.core.codes import FRACTION, GUARD
 from tracewire.solve.core.flow import RESTING, SLIDING
 from tracewire.solve.core.methods import BENT, INNER
 from tracewire.solve.core.units import helper
@@ -75,8 +75,11 @@ def is_quiet(core: int, count: int) -> bool:
 
 @helper
 def _stays_above(core: int, i: int, kind: int) -> bool:
-    """Whether a margin is above zero at all samples, and no parabola says that it may dip."""
+    """Whether a margin is above zero at all samples, and no parabola says that it may dip. What is
+    held may begin at its limit, and is looked at."""
     rows = watch_of(core).rows
+    if kind != GUARD and not watch_of(core).armed[i]:
+        return False
     floor = HELD_NOISE if kind == FRACTION else 0.0
     least = min(rows[0, i], 0.0) - floor
     for k in range(1, SAMPLES):
