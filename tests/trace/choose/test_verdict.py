@@ -234,25 +234,41 @@ def test_effects_that_leave_a_law_behind_are_not_named(
 
 
 @pytest.mark.parametrize(
-    ("kinds", "share", "told"),
+    ("kinds", "dropped", "share", "told"),
     [
-        (["coulomb"], 0.7, ""),
-        (["coulomb"], 0.55, "takes 55 % of the excess error on held-out blocks away"),
+        (["coulomb"], (), 0.7, ""),
+        (["coulomb"], (), 0.55, "takes 55 % of the excess error on held-out blocks away"),
         (
             ["bias", "parametric"],
+            (),
             0.7,
             "takes 70 % of the excess error on held-out blocks away, and a wave or a drift, which"
             " follows a part of anything, needs 80 %",
         ),
-        (["cogging"], 0.88, ""),
+        (["cogging"], (), 0.88, ""),
+        (
+            ["bias", "inertia", "cogging"],
+            (),
+            0.94,
+            "takes 94 % of the excess error on held-out blocks away, and 3 effects, which together"
+            " follow a part of anything, need 95 %",
+        ),
+        (["bias", "inertia", "cogging"], (), 0.96, ""),
+        (["quad_drag", "coulomb", "asym_viscous"], ("c",), 0.76, ""),
     ],
 )
-def test_waves_must_explain_more_than_laws(
-    kinds: list[str], share: float, told: str, monkeypatch: pytest.MonkeyPatch
+def test_waves_and_many_effects_must_explain_more_than_laws(
+    kinds: list[str],
+    dropped: tuple[str, ...],
+    share: float,
+    told: str,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """A law in place of a declared one, which is dropped, is no law more."""
     effects = [SimpleNamespace(candidate=SimpleNamespace(effect=kind)) for kind in kinds]
     trial = SimpleNamespace(effects=effects, reduced_chi2=9.0)
-    chosen: Any = SimpleNamespace(options=TraceOptions(), chosen=SimpleNamespace(trials=[trial]))
+    model = SimpleNamespace(trials=[trial], dropped=dropped)
+    chosen: Any = SimpleNamespace(options=TraceOptions(), chosen=model)
     monkeypatch.setattr(verdict, "error_left", lambda prediction: 0.4)
     assert verdict._describe_shortfall(chosen, share, share - 0.04) == told
 

@@ -243,22 +243,32 @@ def _describe_shape_on_bound(trial: Trial) -> str:
 def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> str:
     """In words, why the named effects are not enough: they explain too little of the excess error,
     or leave too much of the error on held-out blocks; '' where they are. At the noise of all
-    horizons they explain all there is. Waves and drifts follow a part of anything."""
+    horizons they explain all there is."""
     options, trials = prediction.options, prediction.chosen.trials
     at_all = all(trial.reduced_chi2 <= options.at_noise for trial in trials)
-    kinds = {effect.candidate.effect for effect in trials[0].effects}
-    uncommon = not kinds.isdisjoint(options.uncommon)
-    least = options.explained_uncommon if uncommon else options.explained
+    least, why = _least_share(prediction.chosen, options)
     if share < least or (surely < options.explained_surely and not at_all):
         taken = f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
-        waves = (
-            f", and a wave or a drift, which follows a part of anything, needs {100 * least:.0f} %"
-        )
-        return taken + (waves if options.explained <= share < least else "")
+        return taken + (why if options.explained <= share < least else "")
     left = error_left(prediction)
     if trials[-1].reduced_chi2 <= options.at_noise or left <= options.error_left:
         return ""
     return f"leaves {100 * left:.0f} % of the error on a typical held-out block (geometric mean)"
+
+
+def _least_share(chosen: Finalist, options: TraceOptions) -> tuple[float, str]:
+    """The share of the excess that the effects of a model must explain, and in words why more than
+    others: waves and drifts follow a part of anything, and so do many laws together."""
+    effects = chosen.trials[0].effects
+    if len(effects) - len(chosen.dropped) >= options.many_effects:
+        least = options.explained_many
+        what = f"{len(effects)} effects, which together follow a part of anything, need"
+    elif not {e.candidate.effect for e in effects}.isdisjoint(options.uncommon):
+        least = options.explained_uncommon
+        what = "a wave or a drift, which follows a part of anything, needs"
+    else:
+        return options.explained, ""
+    return least, f", and {what} {100 * least:.0f} %"
 
 
 def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
