@@ -280,12 +280,12 @@ def _leaves(core: int, method: int, floors: Vector) -> int:
     """Whether what is held begins at its limit, as where an earlier step has ended at a known time,
     and is beyond it right after. Of a force that is so for a part of a step no sample may tell.
 
-    LEAVES: it is at its limit or just beyond; marked in `hit`. TOO_LONG: it reaches it so early
-    that no sample is beyond it; where one is, it is armed, to be located.
+    LEAVES: it is at its limit or just beyond; marked in `hit`. AT_ONCE: it reaches it so early
+    that no sample may be beyond it; where one is, it is armed, to be located.
     """
     watched, how = watch_of(core), NOTHING
     values = np.empty(len(watched.mode))
-    watched.hit[:] = 0
+    watched.hit[:], watched.found[:] = 0, np.inf
     for i in range(len(floors)):
         start, floor = watched.start[i], floors[i]
         if watched.kind[i] == GUARD or watched.armed[i] or start > floor:
@@ -294,7 +294,7 @@ def _leaves(core: int, method: int, floors: Vector) -> int:
         if beyond <= 1.0 and start <= 0.0:
             watched.hit[i], how = 1, LEAVES
         elif beyond < 1.0 / (SAMPLES - 1):
-            how = max(how, TOO_LONG)
+            watched.found[i], how = 1.0, max(how, AT_ONCE)
         elif beyond <= 1.0:
             watched.armed[i] = 1
     return how
