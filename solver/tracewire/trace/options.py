@@ -71,13 +71,20 @@ class TraceOptions:
     block_counts: float = 0.2
     """The part of the error by which one block counts at most in such a test: in a decay most of
     what is missing shows in the first blocks."""
+    stands_out: float = 4.0
+    """The excess over phi^2, in phi^2, from which on a channel stands out in a block: more than
+    twice the error that is always there."""
+    standing_out: int = 3
+    """Blocks that must stand out at least where one that takes them away is sure by that alone: one
+    or two are single events."""
     material: float = 0.03
     """The part of the declared model's squared error that each effect must take away beside the
     others, the mean over horizons. On 23 generated records with a floor, what stood for the floor
     took at most 0.027, and true second effects 0.2 and more; on a rig a true one took 0.0325."""
-    decisive: float = 0.9
+    decisive: float = 0.85
     """The part of what is left without an effect, at one horizon, from which on it is no stand-in
-    however small it is. On those records stand-ins took at most 0.8, true effects 0.6 to 0.99."""
+    however small it is. On those records stand-ins took at most 0.8, true effects 0.6 to 0.99; on a
+    rig of two tanks a true second effect took 0.87."""
     tied: float = 0.95
     """The quantile of F, with as many degrees of freedom as blocks, up to which the squared error
     of another effect in the place of a named one makes it a tie, where it is no more than

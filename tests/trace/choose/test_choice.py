@@ -6,7 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tracewire.trace.choose.choice import Choice, Entrant, choose, floor_of, is_sure, log_scores
+from tracewire.trace.choose.choice import (
+    Choice,
+    Entrant,
+    choose,
+    floor_of,
+    is_sure,
+    log_scores,
+    take_away_what_stands_out,
+)
 from tracewire.trace.options import TraceOptions
 
 BLOCKS = 10
@@ -232,3 +240,40 @@ def test_a_decay_that_shows_nearly_all_in_its_first_blocks_is_sure() -> None:
     choice = chosen(entrants, decay, 0.0)
     assert choice.z < 3 and choice.sure
     assert not chosen(entrants, np.where(decay > 2, decay, 0.0), 0.0).sure
+
+
+def errors_of(*squares: list[float]) -> np.ndarray:
+    """E/n of models in two channels, of which the second is at the noise, 2 horizons, 2 folds."""
+    rows = np.array(squares, dtype=float)
+    quiet = np.ones_like(rows)
+    stacked = np.stack([rows, quiet], axis=-1)
+    return np.broadcast_to(stacked[:, None, None], (len(rows), 2, 2, *stacked.shape[1:])).copy()
+
+
+def test_what_shows_at_the_start_of_each_decay_alone_is_sure() -> None:
+    """Ten blocks of two signals, of which three of one signal show a law: the blocks at the noise
+    outweigh them."""
+    errors = errors_of([36, 19, 1, 1, 1, 280, 1, 1, 1, 1], [1.1, 1, 1, 1, 1, 1.4, 1, 1, 1, 1])
+    assert take_away_what_stands_out(errors, OPTIONS).tolist() == [False, True]
+    entrants = [model(), model("bent")]
+    assert choose(entrants, log_scores(errors), FOLDS, OPTIONS).chosen == 0
+    entrants[1] = replace(entrants[1], clears=True)
+    found = choose(entrants, log_scores(errors), FOLDS, OPTIONS)
+    assert (found.chosen, found.sure) == (1, True)
+
+
+@pytest.mark.parametrize(
+    ("declared", "other"),
+    [
+        pytest.param([36, 1, 1, 1, 1, 280, 1], [1, 1, 1, 1, 1, 1, 1], id="two blocks"),
+        pytest.param([4, 4, 4, 1, 1, 1, 1], [1, 1, 1, 1, 1, 1, 1], id="nothing stands out"),
+        pytest.param([36, 19, 9, 1, 1, 1, 1], [1, 1, 4, 1, 1, 1, 1], id="half of a block is left"),
+        pytest.param([36, 19, 9, 1, 1, 1, 1], [1, 1, 1, 1, 1, 2, 1], id="another becomes worse"),
+        pytest.param([36, 19, 9, 1, 1, 1, 1], [1, 1, 1, 1, np.inf, 1, 1], id="it does not run"),
+        pytest.param([36, 19, np.inf, 1, 1, 1, 1], [1] * 7, id="the declared one does not run"),
+    ],
+)
+def test_what_stands_out_must_be_taken_away_wherever_it_does(
+    declared: list[float], other: list[float]
+) -> None:
+    assert not take_away_what_stands_out(errors_of(declared, other), OPTIONS).any()

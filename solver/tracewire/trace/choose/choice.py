@@ -11,6 +11,10 @@ hardly more of the squared error with fewer numbers; then without each effect th
 and with a simpler effect in the place of one that imitates it. The logarithm lets a decay be judged
 by all of its blocks, and not by the first alone.
 
+Blocks in which both models are at the noise say nothing for either. They outweigh a law that shows
+at the start of each decay alone. So a model is also sure where it takes away what stands out, in
+each block in which something does.
+
 The logarithm has no measure of what matters: it counts the last per cent of the squared error as
 much as the first half of it, and there the rest of laws that are only nearly right looks like some
 effect. So an effect must also take a part of the declared model's squared error away, or nearly all
@@ -41,8 +45,8 @@ class Entrant:
     """What the choice knows of a model: its effects by name, how many numbers it fits, how much
     speaks against it (uncommon effects as waves, drifts or a sensor's gain; values on bounds), how
     many of its effects may have either sign, so that no physics restricts them, the effects that
-    its own ones imitate, and the part of the declared model's squared error on held-out blocks that
-    it leaves, by horizon."""
+    its own ones imitate, the part of the declared model's squared error on held-out blocks that it
+    leaves, by horizon, and whether it takes away what stands out in the declared model's."""
 
     effects: frozenset[str]
     numbers: int
@@ -50,6 +54,7 @@ class Entrant:
     unsigned: int = 0
     imitated: frozenset[str] = frozenset()
     left: tuple[float, ...] = ()
+    clears: bool = False
 
     def leaves_more(self, other: Entrant) -> float:
         """By how much more of the declared model's squared error it leaves, the mean over horizons;
@@ -139,7 +144,7 @@ def choose(
         for n in _usable(totals)
         if n == 0 or (entrants[n].numbers < fewer and min(entrants[n].left, default=0.0) < 1)
     ]
-    surer = [n for n in usable if n and is_sure(totals, 0, n, options)]
+    surer = [n for n in usable if n and beats_declared(entrants, totals, n, options)]
     among = surer or usable
     chosen = _simplest_near_best(entrants, totals, among, tolerance)
     while commoner := _commoner_models(entrants, among, chosen, options):
@@ -191,13 +196,43 @@ def choice_of(
     """A model chosen, beside the declared one and those that predict as well; else as `choose`."""
     totals = scores.mean(axis=(1, 2))
     gain, z = _cost(totals, 0, chosen), _in_errors(totals[0] - totals[chosen])
-    sure = chosen > 0 and is_sure(totals, 0, chosen, options)
+    sure = chosen > 0 and beats_declared(entrants, totals, chosen, options)
     ties = _ties(entrants, scores, folds, chosen, options)
     return Choice(chosen, gain, z, sure, ties)
 
 
 def _usable(totals: Array) -> list[int]:
     return [n for n in range(len(totals)) if np.isfinite(totals[n]).all()]
+
+
+def beats_declared(
+    entrants: Sequence[Entrant], totals: Array, number: int, options: TraceOptions
+) -> bool:
+    """Whether a model surely predicts better than the declared one: over all blocks, or as it takes
+    away what stands out in some."""
+    enough = _cost(totals, 0, number) >= np.log1p(options.near)
+    return is_sure(totals, 0, number, options) or bool(enough and entrants[number].clears)
+
+
+def take_away_what_stands_out(errors: Array, options: TraceOptions) -> NDArray[np.bool_]:
+    """Whether each model takes nearly all of the declared one's excess over phi^2 away in each
+    block where that stands out, and has no more error in any other by more than the tolerance;
+    never where fewer blocks stand out than a law needs to be told from single events.
+
+    errors: E/n, shape (models, horizons, folds, blocks, channels). Their thirds are predicted from
+    the other thirds, so that no event is taken away by what follows it alone.
+    """
+    none = np.zeros(len(errors), dtype=bool)
+    if not np.isfinite(errors[0]).all():
+        return none
+    excess = (errors / floor_of(errors) - 1).mean(axis=(1, 2))
+    out = excess[0].max(axis=-1) > options.stands_out
+    if np.count_nonzero(out) < options.standing_out:
+        return none
+    total, totals = excess.sum(axis=-1), log_scores(errors).mean(axis=(1, 2))
+    taken = total[:, out] <= (1 - options.decisive) * total[0, out]
+    no_worse = totals[:, ~out] <= totals[0, ~out] + np.log1p(options.near)
+    return np.asarray(taken.all(axis=1) & no_worse.all(axis=1))
 
 
 def is_sure(totals: Array, one: int, other: int, options: TraceOptions) -> bool:

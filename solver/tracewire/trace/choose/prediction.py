@@ -15,6 +15,7 @@ from tracewire.trace.choose.choice import (
     choose,
     floor_of,
     log_scores,
+    take_away_what_stands_out,
 )
 from tracewire.trace.choose.finalists import fill_pool
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
@@ -289,8 +290,11 @@ def _choose(pool: ModelPool, errors: dict[Key, Array]) -> Prediction:
             sum(not e.candidate.sign for e in model.trials[0].effects),
             frozenset().union(*(e.candidate.imitated for e in model.trials[0].effects)),
             tuple(parts.tolist()),
+            bool(clears),
         )
-        for model, parts in zip(models, left, strict=True)
+        for model, parts, clears in zip(
+            models, left, take_away_what_stands_out(stacked, options), strict=True
+        )
     )
     choice = choose(entrants, log_scores(stacked), pool.horizons.groups, options)
     return Prediction(pool.horizons, models, stacked, choice, pool.first[-1], entrants, options)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Section
-from tracewire.trace.choose.choice import is_sure, log_scores
+from tracewire.trace.choose.choice import beats_declared, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.free_run import free_run
@@ -139,7 +139,7 @@ def better_unseen(search: Search, prediction: Prediction) -> dict[int, float]:
         if one.exchanges(mine)
         and one.numbers <= mine.numbers + 1
         and np.isfinite(totals[n]).all()
-        and is_sure(totals, 0, n, options)
+        and beats_declared(prediction.entrants, totals, n, options)
     ]
     if not rivals:
         return {}
