@@ -150,3 +150,43 @@ blocks:
     rests = run(text, inputs={"u": (t, sign * np.minimum(0.375, 2.0 - t))}, method=method)
     assert not rests.events
     assert np.all(rests["v"] == 0.0)
+
+
+SAMPLED = """
+span: [0, 1]
+inputs: [u]
+parameters: {T: 0.01}
+blocks:
+  direct: {type: gain, of: u, k: 1}
+  taken: {type: zero_order_hold, of: direct, period: T}
+  late: {type: unit_delay, of: u, period: T}
+  x: {type: integrator, of: u}
+record: [direct, taken, late, x]
+"""
+sampled = made(SAMPLED)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@settings(max_examples=15, deadline=None)
+@given(T=st.floats(1e-3, 10.0), first=st.integers(-3, 3))
+@example(T=0.01, first=1)
+@example(T=0.02, first=1)
+def test_a_clock_that_ticks_with_the_samples_of_a_held_input_takes_them(
+    method: str, T: float, first: int
+) -> None:
+    """A controller that is recorded at its own ticks has acted on the values of the same rows; a
+    sample of the run at such a time has the value of its row, too."""
+    rows = np.arange(12.0)
+    values = first + rows**2
+    found = simulate(
+        sampled,
+        times=T * rows,
+        inputs={"u": Held(T * rows, values)},
+        parameters={"T": T},
+        method=method,
+    )
+    assert found["direct"].tolist() == values.tolist()
+    assert found["taken"] == pytest.approx(values, abs=1e-9)
+    assert found["late"][2:] == pytest.approx(values[1:-1], abs=1e-9)
+    moved = T * np.cumsum(np.r_[0.0, values[:-1]])
+    assert found["x"] == pytest.approx(moved, rel=1e-9, abs=1e-9 * T)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from tracewire.data.limits import FILE
 
-MATRIX, COMPRESSED = 14, 15
+MATRIX, COMPRESSED = range(14, 16)
 NUMBERS = {
     1: "i1",
     2: "u1",
@@ -30,7 +30,8 @@ NUMBERS = {
     12: "i8",
     13: "u8",
 }
-CELL, STRUCT, OBJECT, NUMERIC = 1, 2, 3, range(6, 16)
+CELL, STRUCT, OBJECT = range(1, 4)
+NUMERIC = range(6, 16)
 OTHERS = {4: "a text", 5: "a sparse matrix", 16: "a function", 17: "an object of a class"}
 IS_COMPLEX = 0x08
 

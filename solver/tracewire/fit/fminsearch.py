@@ -30,15 +30,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.errors import FitError, OptionError
+from tracewire.fit.limits import SIMPLEX
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.options import options_of
 
 Vector = NDArray[np.float64]
 
-REFLECTION, EXPANSION, CONTRACTION, SHRINKAGE = 1.0, 2.0, 0.5, 0.5  # ρ, χ, γ, σ
-RELATIVE_EDGE, ZERO_EDGE = 0.05, 0.0075  # Pfeffer: each coordinate + 5 %; where it is 0, so much
-
-CONVERGED, LIMIT, STOPPED = 1, 0, -1
+STOPPED, LIMIT, CONVERGED = range(-1, 2)
 
 
 @dataclass(frozen=True)
@@ -152,7 +150,7 @@ def _start(x0: ArrayLike) -> Vector:
 
 def _pfeffer(start: Vector) -> Vector:
     """The vertices (n+1, n) of the start simplex; the first is the start itself."""
-    edges = np.where(start == 0, ZERO_EDGE, RELATIVE_EDGE * start)
+    edges = np.where(start == 0, SIMPLEX.zero_edge, SIMPLEX.relative_edge * start)
     return np.vstack([start, start + np.diag(edges)])
 
 
@@ -206,23 +204,24 @@ def _move(vertices: Vector, values: list[float], evaluate: _Evaluate) -> str:
         return x, evaluate(x)
 
     best, second_worst, worst = values[0], values[-2], values[-1]
-    reflected, value = trial(REFLECTION)
+    reflected, value = trial(SIMPLEX.reflection)
     if best <= value < second_worst:
         vertices[-1], values[-1] = reflected, value
         return "reflect"
     if value < best:
-        expanded, further = trial(REFLECTION * EXPANSION)
+        expanded, further = trial(SIMPLEX.reflection * SIMPLEX.expansion)
         if further < value:
             vertices[-1], values[-1] = expanded, further
             return "expand"
         vertices[-1], values[-1] = reflected, value
         return "reflect"
     outside = value < worst
-    contracted, closer = trial(REFLECTION * CONTRACTION if outside else -CONTRACTION)
+    inside = -SIMPLEX.contraction
+    contracted, closer = trial(SIMPLEX.reflection * SIMPLEX.contraction if outside else inside)
     if closer <= value if outside else closer < worst:
         vertices[-1], values[-1] = contracted, closer
         return "contract outside" if outside else "contract inside"
-    vertices[1:] = (1 - SHRINKAGE) * vertices[0] + SHRINKAGE * vertices[1:]
+    vertices[1:] = (1 - SIMPLEX.shrinkage) * vertices[0] + SIMPLEX.shrinkage * vertices[1:]
     values[1:] = [evaluate(vertex) for vertex in vertices[1:]]
     return "shrink"
 

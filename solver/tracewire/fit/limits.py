@@ -24,6 +24,26 @@ class SearchLimits:
 SEARCH = SearchLimits()
 
 
+class SimplexSteps:
+    """How fminsearch moves its simplex (Nelder and Mead 1965), and where it begins (Pfeffer)."""
+
+    reflection: Final[float] = 1.0
+    """ρ"""
+    expansion: Final[float] = 2.0
+    """χ"""
+    contraction: Final[float] = 0.5
+    """γ"""
+    shrinkage: Final[float] = 0.5
+    """σ"""
+    relative_edge: Final[float] = 0.05
+    """By which part of itself each coordinate of the start is moved."""
+    zero_edge: Final[float] = 0.0075
+    """By how much, where it is 0."""
+
+
+SIMPLEX = SimplexSteps()
+
+
 class TrackingLimits:
     """Of how far a model follows a measured series."""
 

@@ -90,6 +90,8 @@ class CheckOptions:
 
     spike: float = 8.0
     """Standard deviations by which a single wrong sample is off its neighbours, at least."""
+    spike_side: int = 5
+    """Samples on each side of it by whose parabola it is judged."""
     spike_neighbour: float = 3.0
     """Standard deviations by which these are off theirs once it stands on its own, at most."""
     spike_share: float = 0.01

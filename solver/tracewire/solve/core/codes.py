@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 KINDS = ("sign", "floor", "segment", "memory", "delay")
-SIGN, FLOOR, SEGMENT, MEMORY, DELAY = 0, 1, 2, 3, 4
+SIGN, FLOOR, SEGMENT, MEMORY, DELAY = range(5)
 UP, DOWN, BOTH = 1, -1, 0
 DIRECTIONS = {"up": UP, "down": DOWN, "both": BOTH}
 # what reaches a level; PASSED: a guard that is found beyond it where a step begins
-GUARD, FRACTION, FORCE, TIME, PASSED = 0, 1, 2, 3, 4
+GUARD, FRACTION, FORCE, TIME, PASSED = range(5)
 # a reset's guard has come to zero on its own: in this stage of an instant, in an earlier one
 CROSSED, ARRIVED = -1, -2
 
@@ -15,9 +15,9 @@ EVENTS = ("crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "
 CROSSING, SCHEDULED, RESET, IMPACT, STICK, SLIP, REST, TRANSITION = range(8)
 LOG_HEAD = 4  # time, kind, mode, direction; behind them the states before and after
 
-FINISHED, PAUSED, LOG_FULL, HISTORY_FULL = 0, 1, 2, 3
-UNDERFLOW, UNDEFINED, CHATTER, NO_MODE, NO_SLIDE = 10, 11, 12, 13, 14
-UNSETTLED, TWO_WRITES, BAD_RESET, NO_END, CARRIED, ENDLESS = 15, 16, 17, 18, 19, 20
+FINISHED, PAUSED, LOG_FULL, HISTORY_FULL = range(4)
+UNDERFLOW, UNDEFINED, CHATTER, NO_MODE, NO_SLIDE = range(10, 15)
+UNSETTLED, TWO_WRITES, BAD_RESET, NO_END, CARRIED, ENDLESS = range(15, 21)
 
 # places in Progress.now
 T, H, END, LENGTH, RTOL, FIXED, RATIO, LONGEST, PACED, LAST = range(10)

@@ -42,7 +42,7 @@ AHEAD = 1e-6  # of the span
 BLOCK_ROUNDS = 6
 MOST_ROUNDS = 500
 HELD = -1  # in place of a mode: the guard stays on its surface
-UNIQUE, NOT_ALONE, NONE, NO_BLEND = 0, 1, 2, 3
+UNIQUE, NOT_ALONE, NONE, NO_BLEND = range(4)
 NO, BARELY, YES = range(3)  # whether modes are consistent; BARELY: nothing drives a guard away
 
 

@@ -185,6 +185,8 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         method, ratio = ints[CURRENT], now[RATIO]
         end = trial.ends[0] + trial.ends[1]
         last = limit - end < locate.smallest_step(core)  # the sum of its start and length rounds
+        if last:
+            end = limit
         how = locate.find(core, method, last)
         at_once = how == AT_ONCE and trial.ends[1] > SOON * now[LENGTH]
         if at_once or how == TOO_LONG:
@@ -196,7 +198,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
             return _crossed(core)
         longest = after
         sample_inside(core, method, end)
-        now[T] = limit if last else end
+        now[T] = end
         copy(trial.x_end, x)
         if flow.counts[SLIDING] + flow.counts[RESTING]:
             pin(core, now[T], x)

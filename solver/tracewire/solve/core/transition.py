@@ -99,9 +99,15 @@ def happen(core: int, t: float, x: Vector) -> int:
     speed = numbers[0]  # the guard's rate before it fired, along its side
     done = np.zeros(len(plan.resets), dtype=np.int64)
     jumps = np.zeros((modes if len(done) else 0, len(x)))
+    for i in range(modes):  # what a clock takes at a point of a table is behind this point
+        if crossings.how[i] == TIME and plan.kind[i] == SEGMENT:
+            flow.m[i] = crossings.to[i]
     status = _resets(core, t, x, done, fired, speed, turned, jumps)
     if status != FINISHED:
         return status
+    for i in range(modes):
+        if crossings.how[i] == TIME and plan.kind[i] == SEGMENT:
+            flow.m[i] = old[i]
     for reset in range(len(done)):
         i = plan.resets[reset, 0]
         own = i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0)

@@ -18,9 +18,9 @@ from tracewire.trace.candidates.inside import (
     local_name,
     rows_of_sums,
 )
+from tracewire.trace.limits import READING
 
 PASSED = ("sum", "gain", "divide")
-MOST_TOLD = 6
 
 
 @dataclass(frozen=True)
@@ -100,6 +100,11 @@ def find_places(model: Model) -> list[Place]:
     ]
 
 
+def _shown(names: Sequence[str]) -> str:
+    """Some names, the first of them where they are many."""
+    return ", ".join(names[: READING.most_names]) + " ..." * (len(names) > READING.most_names)
+
+
 def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
     """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, at sums that
     have no rate, or no coordinate, and in drives that a delay reads."""
@@ -108,9 +113,7 @@ def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
     for path, why in closed_subsystems(diagram).items():
         shut.setdefault(why, []).append(f"'{path}'")
     found = [
-        f"nothing is tried at sums inside {', '.join(paths[:MOST_TOLD])}"
-        f"{' ...' if len(paths) > MOST_TOLD else ''}: {why}"
-        for why, paths in shut.items()
+        f"nothing is tried at sums inside {_shown(paths)}: {why}" for why, paths in shut.items()
     ]
     found += [
         f"nothing is tried at the sums '{path}': they are a row of blocks"
@@ -133,10 +136,9 @@ def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
             if block.effect and {*missing} & {*block.effect.inputs.values()}
         ]
         lacks = " and no ".join({"q": "coordinate", "v": "rate"}[s] for s in missing)
-        shown = ", ".join(needs[:MOST_TOLD]) + (" ..." if len(needs) > MOST_TOLD else "")
         adds = ", ".join(f"{s}: SIGNAL" for s in missing)
         found.append(
-            f"'{place.name}' has no {lacks}: {shown} are not tried there; "
+            f"'{place.name}' has no {lacks}: {_shown(needs)} are not tried there; "
             f"name it, as in `place: {{{adds}}}`, where there is one"
         )
     return found

@@ -17,6 +17,7 @@ from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.candidates.static_outputs import static_outputs
+from tracewire.trace.limits import BATCH
 from tracewire.trace.thresholds import CandidateOptions
 
 Vector = NDArray[np.float64]
@@ -25,7 +26,6 @@ Samples = NDArray[np.intp]
 Answer = Callable[[str, Sequence[Matrix]], Matrix]
 """What torques (N, k) by series at a place, by its name, do to the residuals, (M, k), without what
 the starts of windows and the unknowns imitate."""
-TOGETHER = 64
 """Lengths that are scanned at once: what the columns of all would take is much memory."""
 
 
@@ -92,8 +92,8 @@ def _peaks(
 
     def score(lengths: Vector) -> Vector:
         parts = []
-        for first in range(0, len(lengths), TOGETHER):
-            some = lengths[first : first + TOGETHER]
+        for first in range(0, len(lengths), BATCH.lengths):
+            some = lengths[first : first + BATCH.lengths]
             torques = [
                 _outputs(model, candidate, shape, some, run, samples)
                 for run, samples in zip(runs, used, strict=True)

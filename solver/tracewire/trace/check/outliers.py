@@ -13,8 +13,6 @@ from tracewire.trace.data_thresholds import CheckOptions
 
 Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-SIDE = 5
-"""Samples on each side of an outlier by whose parabola it is judged."""
 BESIDE = np.array([-2, -1, 1, 2])
 """The samples through which a cubic is laid, by their numbers from the one between them."""
 
@@ -51,35 +49,35 @@ def drop_outliers(
 def find_outliers(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> Flags:
     """Which samples (N,) at times t (N,) are outliers beside noise of the standard deviation sigma;
     none at 0."""
-    flags = np.zeros(len(y), dtype=bool)
-    if len(y) <= 2 * SIDE or sigma <= 0:
+    flags, side = np.zeros(len(y), dtype=bool), options.spike_side
+    if len(y) <= 2 * side or sigma <= 0:
         return flags
     off, noise = _off_cubic(t, y)
     rows = np.flatnonzero(off > options.spike * sigma * noise)
-    for k in rows[(rows >= SIDE) & (rows < len(y) - SIDE)].tolist():
-        near = slice(k - SIDE, k + SIDE + 1)
+    for k in rows[(rows >= side) & (rows < len(y) - side)].tolist():
+        near = slice(k - side, k + side + 1)
         flags[k] = _is_outlier(t[near] - t[k], y[near], sigma, options)
     return flags
 
 
 def _is_outlier(t: Vector, y: Vector, sigma: float, options: CheckOptions) -> bool:
     """Whether the middle one of eleven samples is off both parabolas, and alone in that."""
-    steps = np.diff(t)
+    steps, middle = np.diff(t), options.spike_side
     if steps.max() > options.gap * np.median(steps):
         return False
-    sides = slice(0, SIDE), slice(SIDE + 1, None)
+    sides = slice(0, middle), slice(middle + 1, None)
     weights = [np.linalg.pinv(np.vander(t[side], 3))[-1] for side in sides]
     before, after = (float(w @ y[side]) for w, side in zip(weights, sides, strict=True))
     noise = max(float(np.sqrt(1 + w @ w)) for w in weights)
-    off = min(abs(y[SIDE] - before), abs(y[SIDE] - after))
+    off = min(abs(y[middle] - before), abs(y[middle] - after))
     if off <= options.spike * noise * sigma:
         return False
-    mended, beside = y.copy(), SIDE + BESIDE
-    mended[SIDE] = _cubic_weights(t[beside][None])[0] @ mended[beside]
-    alike = max(abs(mended[SIDE] - before), abs(mended[SIDE] - after)) < options.spike_alike * off
+    mended, beside = y.copy(), middle + BESIDE
+    mended[middle] = _cubic_weights(t[beside][None])[0] @ mended[beside]
+    apart = max(abs(mended[middle] - before), abs(mended[middle] - after))
     around, noises = _off_cubic(t, mended)
     limits = np.maximum(options.spike_neighbour * sigma * noises, options.spike_share * off)
-    return bool(alike and (around < limits).all())
+    return bool(apart < options.spike_alike * off and (around < limits).all())
 
 
 def _off_cubic(t: Vector, y: Vector) -> tuple[Vector, Vector]:

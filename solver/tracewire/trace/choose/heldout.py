@@ -20,6 +20,7 @@ from tracewire.residual import (
 )
 from tracewire.solve import release
 from tracewire.trace.choose.horizons import REST, Horizon, Horizons, restrict
+from tracewire.trace.limits import ROUNDING
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import TraceProblem, Trial
@@ -27,8 +28,6 @@ from tracewire.trace.trials.trial import TraceProblem, Trial
 Vector = NDArray[np.float64]
 Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
-NEAR = 1e-6
-"""Of the size of a value: nearer to its bound it sits there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +59,9 @@ class Finalist:
         unknowns = self.trials[0].windows.criterion.unknowns
 
         def is_zero(name: str, scale: float) -> bool:
-            return all(trial.values.get(name, 0.0) <= NEAR * scale for trial in self.trials)
+            return all(
+                trial.values.get(name, 0.0) <= ROUNDING.on_bound * scale for trial in self.trials
+            )
 
         return tuple(u.name for u in unknowns if u.low == 0.0 and is_zero(u.name, u.scale))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tracewire.trace.found import Power
+from tracewire.trace.limits import ROUNDING
 from tracewire.trace.screen.screening import Screen
-from tracewire.trace.trials.statistics import ABSORBED
 
 
 def detection_limits(screen: Screen) -> tuple[Power, ...]:
@@ -26,7 +26,7 @@ def detection_limits(screen: Screen) -> tuple[Power, ...]:
     found: dict[str, Power] = {}
     for row in screen.rows:
         indices = list(row.columns)
-        if float(np.max(columns.absorbed_fraction[indices])) > 1 - ABSORBED:
+        if float(np.max(columns.absorbed_fraction[indices])) > 1 - ROUNDING.absorbed:
             continue
         singular = np.linalg.svd(columns.matrix[:, indices], compute_uv=False)
         if not singular[-1] > 0:

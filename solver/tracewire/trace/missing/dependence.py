@@ -19,6 +19,7 @@ from scipy.linalg import solve
 from tracewire.residual import Projection, project_out_initial_states
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
+from tracewire.trace.limits import BATCH
 from tracewire.trace.missing.bases import Basis, bases_of
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation, WindowPieces
 from tracewire.trace.thresholds import MapOptions
@@ -27,7 +28,6 @@ from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-TOGETHER, COLUMNS = 2000, 100
 """Residuals and columns that are worked on at once: fewer take longer, more take memory."""
 
 
@@ -138,7 +138,7 @@ class MapProblem:
             known, left = self.unknowns[here], self.residual[here]
             waiting.append(np.column_stack((known, view.project_out(columns), left)))
             rows = last - first
-            if rows >= TOGETHER or n + 1 == len(self.projections):
+            if rows >= BATCH.map_rows or n + 1 == len(self.projections):
                 block, folds = np.concatenate(waiting), self.folds[first:last]
                 for fold in np.unique(folds).tolist():
                     rows_of = block[folds == fold]
@@ -204,7 +204,7 @@ def _score_bases(
     some: list[Basis] = []
     for basis in bases:
         some.append(basis)
-        if sum(b.columns[0].shape[1] for b in some) >= COLUMNS:
+        if sum(b.columns[0].shape[1] for b in some) >= BATCH.map_columns:
             yield from _score_batch(problem, place, some)
             some = []
     if some:

@@ -8,12 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Projection
+from tracewire.trace.limits import BATCH
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-ROWS = 64
-"""Rows that are worked on at once."""
 
 
 def project_out_starts(
@@ -49,7 +48,7 @@ def project_out_starts(
 
 def project_out(rows: Matrix, basis: Matrix) -> Matrix:
     """Rows (K, M) without their parts along an orthonormal basis (M, n); they are changed."""
-    for first in range(0, len(rows), ROWS):
-        some = rows[first : first + ROWS]
+    for first in range(0, len(rows), BATCH.rows):
+        some = rows[first : first + BATCH.rows]
         some -= (some @ basis) @ basis.T
     return rows

@@ -16,11 +16,11 @@ from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
 from tracewire.trace.candidates.lines import with_lines
 from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.candidates.waves import as_measured, scan_waves
+from tracewire.trace.limits import BATCH, ROUNDING
 from tracewire.trace.screen.projection import project_out, project_out_starts
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.thresholds import ScreenOptions
 from tracewire.trace.trials.statistics import (
-    ABSORBED,
     BoundedColumns,
     CandidateColumns,
     orthonormal,
@@ -30,11 +30,6 @@ from tracewire.trace.trials.trial import PlacedEffect, Trial
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
 Ints = NDArray[np.intp]
-TOGETHER = 2_000_000
-"""Numbers of torques that are looked at once."""
-NEAR = 1e-6
-SEEN = 1e-10
-"""The part of a column's square, beyond what window starts imitate, from which on it is seen."""
 QUADRATURE = (0.0, math.pi / 2)
 
 
@@ -125,7 +120,7 @@ class Screen:
     def observable(self) -> dict[str, ScreenRow]:
         """The best variant of each candidate that the unknowns do not imitate, of any sign, by its
         name."""
-        seen = (row for row in self.rows if row.absorbed_fraction < 1 - ABSORBED)
+        seen = (row for row in self.rows if row.absorbed_fraction < 1 - ROUNDING.absorbed)
         return _best_of_each(seen, lambda row: row.rss_reduction)
 
     def best_rows_only(self) -> Screen:
@@ -236,7 +231,7 @@ def screen_candidates(
         candidates = _scan(linearisation, candidates, measured, every, unknowns, rest)
     reduced, whole, variants = _rows(linearisation, candidates, measured, every, tell)
     with np.errstate(over="ignore", invalid="ignore"):  # answers that grow without bounds
-        is_seen = _squares(reduced) >= SEEN * whole
+        is_seen = _squares(reduced) >= ROUNDING.seen * whole
     reduced[~(is_seen & np.isfinite(whole))] = 0.0
     reduced, variants = _by_series(linearisation, reduced, variants, kept)
     seen = _squares(reduced)
@@ -299,7 +294,7 @@ def _with_bounds(
     values = np.array([windows.values[u.name] for u in windows.criterion.unknowns])
     low = np.array([u.low for u in windows.criterion.unknowns]) - values
     high = np.array([u.high for u in windows.criterion.unknowns]) - values
-    least = NEAR * np.array([u.scale for u in windows.criterion.unknowns])
+    least = ROUNDING.on_bound * np.array([u.scale for u in windows.criterion.unknowns])
     found = BoundedColumns(
         columns.residual,
         columns.matrix,
@@ -353,7 +348,7 @@ def _rows(
     size = sum(-(-near.residual.size // every) for near in windows.linearisations)
     rows, first = np.empty((len(variants) + len(sensors), size)), 0
     whole = np.empty(len(rows))
-    together = max(TOGETHER // sum(len(run.t) for run in linearisation.trajectories), 1)
+    together = max(BATCH.torques // sum(len(run.t) for run in linearisation.trajectories), 1)
     for place, group in by_place.items():
         for begin in range(0, len(group), together):  # all of them twice are much memory
             part = group[begin : begin + together]
@@ -452,7 +447,7 @@ def _with_first_values(row: ScreenRow, values: Vector) -> ScreenRow:
 
 def _on_bound(unknown: Unknown, value: float) -> bool:
     """Whether a fitted value sits on a bound."""
-    near = NEAR * unknown.scale
+    near = ROUNDING.on_bound * unknown.scale
     return value - unknown.low < near or unknown.high - value < near
 
 

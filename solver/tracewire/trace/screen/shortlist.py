@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tracewire.trace.limits import ROUNDING
 from tracewire.trace.screen.screening import Proposal, Screen, ScreenRow
-
-SAME = 1 - 1e-6
-"""The canonical correlation from which on two effects are one and the same on these data."""
 
 
 def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
@@ -21,7 +19,9 @@ def shortlist(screen: Screen, room: int, count: int) -> list[Proposal]:
         same = (
             screen.columns.canonical_correlation(row.columns, other.columns) for other in singles
         )
-        if row.gain > least and (len(singles) >= options.many or all(x < SAME for x in same)):
+        if row.gain > least and (
+            len(singles) >= options.many or all(x < ROUNDING.same for x in same)
+        ):
             singles.append(row)
     found = [Proposal((row,), row.gain) for row in singles[:count]]
     if room < 2:

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.special import chdtrc
 
+from tracewire.trace.limits import ROUNDING
 from tracewire.trace.thresholds import ScreenOptions
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
-NEGLIGIBLE = 1e-9
-ABSORBED = 1e-6
-"""The part of a column's square beyond which the unknowns that are there imitate it completely."""
 
 
 def effective_fraction(residuals: Sequence[Vector]) -> float:
@@ -105,7 +103,7 @@ class CandidateColumns:
     def _alone(self) -> tuple[Vector, Vector]:
         """The falls and the coefficients (K,) of each column alone."""
         sizes = np.einsum("ij,ij->j", self.matrix, self.matrix)
-        seen = (1 - self.absorbed_fraction >= ABSORBED) & (sizes > 0)
+        seen = (1 - self.absorbed_fraction >= ROUNDING.absorbed) & (sizes > 0)
         along = self.residual @ self.matrix
         values = np.where(seen, -along / np.where(seen, sizes, 1.0), 0.0)
         return -along * values, values
@@ -116,7 +114,7 @@ class CandidateColumns:
             falls, values = self._alone
             return float(falls[indices[0]]), values[list(indices)]
         chosen = self.matrix[:, list(indices)]
-        if min(1 - self.absorbed_fraction[list(indices)]) < ABSORBED:
+        if min(1 - self.absorbed_fraction[list(indices)]) < ROUNDING.absorbed:
             return 0.0, np.zeros(len(indices))
         sizes = np.linalg.norm(chosen, axis=0)
         matrix, along = chosen.T @ chosen, self.residual @ chosen
@@ -158,7 +156,7 @@ class CandidateColumns:
         variance = (self.rss - best) / max(self.degrees_of_freedom, 1)
         rss_reduction = best * self.effective_fraction / max(variance, 1e-300)
         most = sum(float(chdtrc(len(group), rss_reduction)) for group in groups)
-        if most < NEGLIGIBLE:
+        if most < ROUNDING.negligible:
             return most
         rng = np.random.default_rng(self.options.seed)
         for draws in self.options.draws:
@@ -234,7 +232,7 @@ class BoundedColumns(CandidateColumns):
 
     def score(self, indices: Sequence[int]) -> tuple[float, Vector]:
         """As of columns without bounds; the unknowns move with them."""
-        if min(1 - self.absorbed_fraction[list(indices)]) < ABSORBED:
+        if min(1 - self.absorbed_fraction[list(indices)]) < ROUNDING.absorbed:
             return 0.0, np.zeros(len(indices))
         rss_reduction, values = self._solve(indices)
         return max(rss_reduction - self._unknowns_reduction, 0.0), values[self.unknowns.shape[1] :]
