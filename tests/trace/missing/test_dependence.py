@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 import tracemalloc
 from collections.abc import Callable
 
@@ -16,6 +15,7 @@ from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Dependence, Missing
+from tracewire.trace.limits import BATCH
 from tracewire.trace.missing.bases import Basis, bases_of
 from tracewire.trace.missing.dependence import ScoredBasis, choose_smallest, map_dependence
 from tracewire.trace.options import TraceOptions
@@ -24,7 +24,6 @@ from tracewire.trace.trials.trial import TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 
-dependence = sys.modules[map_dependence.__module__]
 Law = Callable[[float, float, float], float]
 OSCILLATOR = """\
 span: [0, 6]
@@ -88,8 +87,8 @@ def test_the_map_is_the_same_however_much_is_worked_on_at_once(
 ) -> None:
     given = linearisation_of(lambda q, v, z: 0.8 * math.sin(12 * q))
     shares, missing = map_dependence(*given)
-    monkeypatch.setattr(dependence, "TOGETHER", 10**9)
-    monkeypatch.setattr(dependence, "COLUMNS", 10**9)
+    monkeypatch.setattr(type(BATCH), "map_rows", 10**9)
+    monkeypatch.setattr(type(BATCH), "map_columns", 10**9)
     whole, same = map_dependence(*given)
     known = {(s.place, s.variables): s.share for s in whole}
     found = {(s.place, s.variables): s.share for s in shares}
