@@ -15,6 +15,7 @@ from tracewire.diagram import read_text
 from tracewire.errors import DataError
 from tracewire.residual import Measured
 from tracewire.trace import CheckOptions, SearchOptions, SplitOptions, TraceOptions, trace
+from tracewire.trace.limits import ROUNDING as ROUNDING_LIMITS
 from tracewire.trace.saved import from_data, to_data
 from tracewire.trace.trials.data_split import split_data
 
@@ -25,22 +26,15 @@ ROUNDING = 1e-6
 """A number that is not larger than this, or that near to 1, guards against rounding."""
 # the other numbers with a name, none of which a physicist could want to be another one
 FORMATS = {
-    "candidates/places.py:MOST_TOLD": "how many of a kind are written",
     "saved.py": "the version of a file",
     "choose/horizons.py:REST": "a label",
     "units.py:SYMBOL_UNITS": "exponents of units",
     "units.py:RATE_OF_COORDINATE": "the same",
     "units.py:SECOND": "the same",
     "check/refusals.py:FACTORS": "between units",
-    "check/outliers.py:SIDE": "the length of a filter",
     "check/outliers.py:BESIDE": "which samples a filter takes",
     "screen/screening.py:QUADRATURE": "0 and a quarter of a turn",
     "trials/phase_fit.py:TURN": "the angles of a turn",
-    "screen/projection.py:ROWS": "how much is worked on at once: the answer is the same",
-    "screen/screening.py:TOGETHER": "the same",
-    "missing/dependence.py:TOGETHER": "the same",
-    "missing/dependence.py:COLUMNS": "the same",
-    "candidates/waves.py:TOGETHER": "the same",
 }
 
 
@@ -89,6 +83,12 @@ def test_no_threshold_stands_outside_of_the_options() -> None:
     assert found - allowed == set()
     met = allowed | {name.partition(":")[0] for name in allowed}
     assert set(FORMATS) - met == set(), "what is gone needs no exception"
+
+
+def test_limits_of_rounding_are_no_thresholds() -> None:
+    values = [value for name, value in vars(type(ROUNDING_LIMITS)).items() if name[0] != "_"]
+    assert values
+    assert [v for v in values if not (0 < v <= ROUNDING or 0 <= 1 - v <= 1.01 * ROUNDING)] == []
 
 
 @pytest.mark.parametrize(
