@@ -260,12 +260,14 @@ def _least_share(chosen: Finalist, options: TraceOptions) -> tuple[float, str]:
     """The share of the excess that the effects of a model must explain, and in words why more than
     others: waves and drifts follow a part of anything, and so do many laws together."""
     effects = chosen.trials[0].effects
-    if len(effects) - len(chosen.dropped) >= options.many_effects:
+    more = len(effects) - len(chosen.dropped)
+    if more >= options.many_effects:
         least = options.explained_many
         what = f"{len(effects)} effects, which together follow a part of anything, need"
     elif not {e.candidate.effect for e in effects}.isdisjoint(options.uncommon):
-        least = options.explained_uncommon
-        what = "a wave or a drift, which follows a part of anything, needs"
+        least = options.explained_uncommon if more < 2 else options.explained_uncommon_beside
+        beside = " beside another effect" if more > 1 else ""
+        what = f"a wave or a drift{beside}, which follows a part of anything, needs"
     else:
         return options.explained, ""
     return least, f", and {what} {100 * least:.0f} %"
