@@ -1,7 +1,7 @@
 """Sampling: blocks that keep the value that a signal had at an instant, until the next one.
 
-All samples of one instant are taken together, of the signals as they were just before it. A table
-of the time, as a measured input that is held, counts as it is from this instant on.
+All samples of one instant are taken together, of the states as they were just before it. What jumps
+there at a known time, as a step or a measured input that is held, counts as it is behind the jump.
 """
 
 from tracewire.library import Block, Event, Input, Output, Parameter, State

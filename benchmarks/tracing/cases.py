@@ -164,7 +164,7 @@ EXTRA = tuple(
         single("cart_smooth", spec("lugre", share=0.08, s="0.05Q", vs="0.4V", ratio="0.5")),
         single("pendulum", spec("drive_saturation", "drive.u", absolute=0.6, limit="0.6U")),
         single("duffing", spec("drive_dead_zone", "drive.u", absolute=0.6, zone="0.2U")),
-        single("torsion", spec("load_friction", share=0.06)),
+        single("driven", spec("load_friction", share=0.06)),
         single("driven", spec("bouc_wen", share=0.06, s="0.15Q", n="1.5")),
         single("chain", spec("stiffness", 1, share=0.1)),
         single(

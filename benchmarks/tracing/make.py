@@ -128,7 +128,10 @@ def _sized(
             forces.append(values["kappa1"] * (u - y[0]) if place == 0 else values["T_s2"])
         else:
             forces.append(plant.forces(values, y[:n], y[n : 2 * n], u)[place])
-    size = spec.share * float(np.sqrt(np.mean(np.square(forces)) / np.mean(np.square(outputs))))
+    acts = float(np.mean(np.square(outputs)))
+    if acts == 0.0:
+        raise ValueError(f"{spec.name} does nothing in {plant.name}: take another system")
+    size = spec.share * float(np.sqrt(np.mean(np.square(forces)) / acts))
     return replace(hidden, coefficient=factor * size)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from solve.models import kinds, made, run
 from tracewire.errors import DiagramError, SimulationError
-from tracewire.solve import simulate
+from tracewire.solve import Held, simulate
 
 CLOCK = """
 span: [0, 2]
@@ -134,3 +136,81 @@ def test_a_block_whose_ticks_numbers_cannot_tell_apart_is_refused() -> None:
         SimulationError, match=r"block .y.: the parameters do not meet .abs\(-1000000"
     ):
         simulate(made(text))
+
+
+KNOWN_TIMES = """
+span: [0, 2]
+inputs: [u]
+parameters: {T: 0.1}
+blocks:
+  now: {type: time}
+  jump: {type: expression, formula: "SOURCE"}
+  kept: {type: relay, of: jump, on_at: 0.5, off_at: -0.5}
+  loop: {type: expression, formula: "min(max(jump - 0.5*loop, -1), 1)"}
+  seen: {type: expression, formula: "SEEN"}
+  taken: {type: zero_order_hold, of: seen, period: T, start: -7}
+  late: {type: unit_delay, of: seen, period: T}
+record: [seen, taken, late]
+"""
+SOURCES = (
+    "2.0*(1 if t - 3*T >= 0 else 0) - 3.0*(1 if t - 7*T >= 0 else 0)",
+    "floor(t/T) - 5",
+    "2*floor(t/(2*T)) - 5",
+    "u",
+    "u + floor(t/(2*T))",
+)
+SEEN = (
+    "jump",
+    "min(max(jump, -1), 1)",
+    "1 if jump > 0.5 else -1",
+    "abs(jump) + now",
+    "kept",
+    "loop",
+)
+
+
+@pytest.mark.parametrize("method", ["auto", "rosenbrock"])
+@pytest.mark.parametrize("seen", SEEN)
+@settings(max_examples=4, deadline=None)
+@given(
+    source=st.sampled_from(SOURCES),
+    values=st.lists(st.integers(-3, 3), min_size=12, max_size=12),
+    period=st.sampled_from([0.1, 0.07, 0.125]),
+)
+@example(source="u", values=[0, 0, 2, 2, -3, -3, 1, 1, 0, 0, 0, 0], period=0.1)
+@example(source=SOURCES[0], values=[0] * 12, period=0.1)
+def test_a_clock_reads_what_jumps_at_its_tick_behind_the_jump(
+    method: str, seen: str, source: str, values: list[int], period: float
+) -> None:
+    """Whatever makes it jump, and whatever lies between: the sample is what a run keeps there.
+
+    Xcos 6.1 samples a step at a tick of its clock so (STEP_FUNCTION, SampleCLK, SAMPHOLD_m).
+    """
+    ticks = period * np.arange(12.0)
+    found = simulate(
+        made(KNOWN_TIMES.replace("SOURCE", source).replace("SEEN", seen)),
+        parameters={"T": period},
+        times=ticks,
+        span=(0.0, 11 * period),
+        inputs={"u": Held(ticks, np.array(values, dtype=float))},
+        method=method,
+    )
+    assert found["taken"] == pytest.approx(found["seen"], abs=1e-12)
+    assert found["late"][2:] == pytest.approx(found["seen"][1:-1], abs=1e-12)
+
+
+@pytest.mark.parametrize("samples", [1, 3])
+def test_a_delay_of_some_periods_between_clocks_is_as_many_samples(samples: int) -> None:
+    text = """
+span: [0, 1]
+parameters: {T: 0.07, D: DELAY}
+blocks:
+  count: {type: expression, formula: t/T}
+  held: {type: zero_order_hold, of: count, period: T}
+  sent: {type: delay, of: held, time: D}
+  again: {type: zero_order_hold, of: sent, period: T}
+record: [again]
+"""
+    text = text.replace("DELAY", str(samples * 0.07))
+    found = run(text, times=0.07 * (np.arange(12) + 0.5))["again"]
+    assert found[samples:] == pytest.approx(np.arange(12.0 - samples), abs=1e-9)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from solve.logs import METHODS
-from solve.models import run
+from solve.models import kinds, run
 
 TICKS = """
 events:
@@ -191,3 +191,33 @@ events:
 """
     )
     assert [event.block for event in found.events] == ["c", "events[0]"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_an_impact_a_tick_and_a_step_at_one_instant(method: str) -> None:
+    """At 1 s the tick records a step as it is behind it, and the rate with which the ball meets the
+    floor as it was before it; a sign of the step and a counter of it are behind it, too."""
+    found = run(
+        """
+span: [0, 1.5]
+blocks:
+  weight: {type: constant, value: -2}
+  ball: {type: bouncing_body, force: weight, start: 1, restitution: 0.5}
+  jump: {type: step, at: 1, height: 5, offset: -1}
+  limited: {type: saturation, of: jump, low: -1, high: 1}
+  rises: {type: counter, of: jump, threshold: 0}
+  seen: {type: integrator, of: none}
+  taken: {type: integrator, of: none}
+  kept: {type: integrator, of: none}
+  counted: {type: integrator, of: none, start: 7}
+  none: {type: constant, value: 0}
+events:
+  - {every: 1, offset: 1, set: {seen: ball.v, taken: jump, kept: limited, counted: rises}}
+""",
+        method=method,
+    )
+    final = found.final
+    assert [final["taken"], final["kept"], final["counted"]] == pytest.approx([4, 1, 1], abs=1e-12)
+    assert final["seen"] == pytest.approx(-2, abs=1e-9)
+    assert final["ball.v"] == pytest.approx(0, abs=1e-9)
+    assert kinds(found).count("impact") == 1

@@ -99,8 +99,11 @@ warning says so.
 events and wall time stop a run with block, time, values and what to try. A run is paused about ten
 times a second; there Ctrl-C is heard, and raises `Interrupted`, which carries the run up to there.
 
-**Order at one instant.** What crosses there and what is scheduled there (clocks, too, which read
-left limits), resets, modes and transitions, resets of guards that were carried over, one sample.
+**Order at one instant.** What jumps there at a known time (steps, tables, delayed jumps), until all
+modes stand still, with the resets whose guards it carries over; then clocks and what crosses there,
+all of whose resets read the states from before them; modes and transitions; resets of guards that
+were carried over; one sample. So a clock reads a step of its instant as it is behind it, as Xcos
+does, and a bounce as it was before.
 
 **How it runs.** `initial_value_problem` checks the arguments of a run and gives them as numbers
 (`problem`). An `Integrator` is given a problem: it takes arrays that fit, set to the numbers

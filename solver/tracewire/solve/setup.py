@@ -134,7 +134,7 @@ def _new_progress(model: Model, count: int, columns: int) -> Progress:
         ints=np.zeros(15, dtype=np.int64),
         times=np.zeros(count),
         samples=np.full((count, columns), np.nan),
-        log=np.empty((max(4 * modes + 16, MEMORY.log // width), width)),
+        log=np.empty((max(8 * (modes + 2), MEMORY.log // width), width)),
         stiff=np.empty((MEMORY.stiff, 3 * modes)),
         recent=np.zeros((CHATTER_EVENTS, 2)),
         flights=np.tile([np.inf, 0.0], (modes, 1)),

@@ -6,8 +6,9 @@ KINDS = ("sign", "floor", "segment", "memory", "delay")
 SIGN, FLOOR, SEGMENT, MEMORY, DELAY = range(5)
 UP, DOWN, BOTH = 1, -1, 0
 DIRECTIONS = {"up": UP, "down": DOWN, "both": BOTH}
-# what reaches a level; PASSED: a guard that is found beyond it where a step begins
-GUARD, FRACTION, FORCE, TIME, PASSED = range(5)
+# what reaches a level; PASSED: a guard that is found beyond it where a step begins; CHANGES: a
+# known time whose mode changes now, while the resets that it fires wait; WAITS: a guard that waits
+GUARD, FRACTION, FORCE, TIME, PASSED, CHANGES, WAITS = range(7)
 # a reset's guard has come to zero on its own: in this stage of an instant, in an earlier one
 CROSSED, ARRIVED = -1, -2
 

@@ -21,7 +21,6 @@ from tracewire.solve.core.codes import (
     ABSOLUTE,
     BUDGET,
     CURRENT,
-    DELAY,
     END,
     FINISHED,
     FIXED,
@@ -39,12 +38,10 @@ from tracewire.solve.core.codes import (
     RATIO,
     REJECTED,
     RTOL,
-    SEGMENT,
     STAGE,
     STEPS,
     STIFF_STEPS,
     SUSPICIOUS,
-    TIME,
     UNDEFINED,
     UNDERFLOW,
     WHILE_HELD,
@@ -65,7 +62,6 @@ from tracewire.solve.core.history import (
     begin_history,
     has_room,
     is_delayed,
-    is_rough,
     longest_followed,
     point_to_history,
 )
@@ -76,9 +72,9 @@ from tracewire.solve.core.methods import (
     IMPLICIT,
     SAFETY,
 )
-from tracewire.solve.core.quiet import SAMPLES
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
+from tracewire.solve.core.scheduled import happen_at_known_time
 from tracewire.solve.core.start import begin, reach_sides
 from tracewire.solve.core.stiffness import choose, watch_stiffness
 from tracewire.solve.core.surface import pin
@@ -87,7 +83,6 @@ from tracewire.solve.core.units import helper, unit
 
 TOGETHER = 1e-12
 SOON = 1e-9
-NEARLY = 0.01  # of what a margin falls by in the last quarter of a step
 NEAR = 32.0
 PAUSED_INSIDE = 2  # in ints[STAGE]: between two steps of a smooth part
 LARGEST_PART = 0.1  # of the span, for one step
@@ -129,7 +124,7 @@ def advance(core: int) -> int:
             return UNDEFINED
     budget = ints[STEPS] + ints[BUDGET]
     while now[T] < now[END]:
-        if ints[LOGGED] + 4 * modes + 4 > len(progress.log):
+        if ints[LOGGED] + 8 * (modes + 1) > len(progress.log):
             return LOG_FULL
         if ints[STEPS] >= budget:
             return PAUSED
@@ -216,7 +211,7 @@ def _smooth(core: int, ahead: Vector, budget: int) -> int:
         if watch_stiffness(core):
             choose(core)
     if limit == due:
-        return _scheduled(core, ahead)
+        return happen_at_known_time(core, ahead)
     return FINISHED
 
 
@@ -427,52 +422,4 @@ def _crossed(core: int) -> int:
         same = same and x[i] == before[i]
     now[H] = now[H] / 4 if same else 0.0
     ints[SUSPICIOUS] = 0
-    return status
-
-
-@unit
-def _reached_with(core: int) -> bool:
-    """Let the guards cross that reach their levels at the known time at which a step has ended.
-
-    None of its samples is beyond its level, and the next step would begin with a zero. What would
-    reach it later, however soon, is located by that step.
-    """
-    progress, watched, crossings = progress_of(core), watch_of(core), crossings_of(core)
-    rows, start = watched.rows, watched.start
-    last, some = SAMPLES - 1, False
-    for row in range(locate.watched_count(core)):
-        armed = watched.armed[row] and watched.kind[row] == GUARD
-        some = some or (armed and start[row] <= NEARLY * (rows[last - 1, row] - start[row]))
-    if not some or not locate.reached(core, progress.now[T], progress.x, 0.0, watched.hit):
-        return False
-    some = False
-    for row in range(locate.watched_count(core)):
-        i = watched.mode[row]
-        if watched.hit[row] and watched.armed[row] and crossings.how[i] < 0:
-            crossings.how[i], crossings.to[i] = GUARD, watched.to[row]
-            crossings.up[i] = int(watched.sign[row] < 0)
-            some = True
-    return some
-
-
-@unit
-def _scheduled(core: int, ahead: Vector) -> int:
-    """Change timed modes, and settle the others in the new field. A status."""
-    flow = flow_of(core)
-    plan = plan_of(core)
-    progress, crossings = progress_of(core), crossings_of(core)
-    loud = False
-    no_crossings(core)
-    for row, i in enumerate(plan.timed):
-        if not np.isnan(ahead[row]):
-            crossings.how[i], crossings.to[i] = TIME, ahead[row]
-            crossings.up[i] = ahead[row] > flow.m[i]
-            quiet = plan.kind[i] == SEGMENT
-            if plan.kind[i] == DELAY:
-                quiet = not is_rough(core, i, ahead[row])
-            loud = loud or not quiet
-    loud = _reached_with(core) or loud
-    status = happen(core, progress.now[T], progress.x)
-    if loud:
-        progress.now[H] = 0.0
     return status

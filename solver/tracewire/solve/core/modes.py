@@ -141,3 +141,13 @@ def margin(core: int, i: int, guard: float) -> float:
     if plan.is_timed[i] or plan.kind[i] == MEMORY or flow_of(core).bound[i] != FREE:
         return np.inf
     return inside(core, i, guard)
+
+
+@helper
+def fires_reset(core: int, i: int) -> bool:
+    """Whether the guard of a mode fires a reset."""
+    plan = plan_of(core)
+    found = False
+    for row in range(len(plan.resets)):
+        found = found or plan.resets[row, 0] == i
+    return found

@@ -15,6 +15,7 @@ from tracewire.solve.core.arrays import (
     sensitivity_of,
 )
 from tracewire.solve.core.codes import (
+    CHANGES,
     DELAY,
     FRACTION,
     GRAZES,
@@ -25,6 +26,7 @@ from tracewire.solve.core.codes import (
     SIMULTANEOUS,
     TIME,
     TOUCHES,
+    WAITS,
     ZENO,
     T,
 )
@@ -47,7 +49,7 @@ from tracewire.solve.core.flow import (
 )
 from tracewire.solve.core.history import find_lags, is_delayed, jump_moves, recall
 from tracewire.solve.core.linear import dot, factor, substitute
-from tracewire.solve.core.modes import levels
+from tracewire.solve.core.modes import fires_reset, levels
 from tracewire.solve.core.readings import guard_rates
 from tracewire.solve.core.record import catch_up
 from tracewire.solve.core.sensitivity import begin_to_follow, flag, total_of
@@ -97,8 +99,9 @@ def enter(core: int, t: float, x: Vector) -> None:
     if smooth:
         return
     main, plain = -1, -1
-    for i in np.flatnonzero(crossings.how >= 0):
-        if crossings.how[i] != TIME or _resets(core, i):
+    happening = np.flatnonzero((crossings.how >= 0) & (crossings.how != WAITS))
+    for i in happening:
+        if not _is_plain(core, i):
             main = i if main < 0 else main
             continue
         # changes of modes at scheduled times move on their own, one after the other
@@ -107,8 +110,8 @@ def enter(core: int, t: float, x: Vector) -> None:
         plain = i
     if main >= 0 and plain >= 0:
         _pass(core, t, x, plain, here, there)
-    for i in np.flatnonzero(crossings.how >= 0):
-        if i == plain or crossings.how[i] != TIME or _resets(core, i):
+    for i in happening:
+        if i == plain or not _is_plain(core, i):
             _instant(core, t, x, here, i, instants[i])
     main = plain if main < 0 else main
     if main >= 0:
@@ -117,8 +120,8 @@ def enter(core: int, t: float, x: Vector) -> None:
             for j in range(len(moved)):
                 s[:, j] += moved[j] * here
     flow.m[:] = old
-    for i in np.flatnonzero(crossings.how >= 0):
-        if i == main or (crossings.how[i] == TIME and not _resets(core, i)):
+    for i in happening:
+        if i == main or _is_plain(core, i):
             continue
         for j in range(len(moved)):
             apart = abs(instants[i, j] - moved[j])
@@ -129,14 +132,14 @@ def enter(core: int, t: float, x: Vector) -> None:
 
 @helper
 def _is_smooth(core: int, t: float, x: Vector, here: Vector, there: Vector) -> bool:
-    """Whether all that happens is that tables of t go on to their next points, where the rates have
-    a kink and no jump: when that is does not matter then."""
+    """Whether all that happens is that tables of t go on to their next points, and clocks, where
+    the rates have a kink and no jump: when that is does not matter then."""
     flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
     if flow.counts[SLIDING] + flow.counts[RESTING]:
         return False
     for i in range(len(plan.kind)):
-        timed = crossings.how[i] == TIME and plan.kind[i] == SEGMENT
-        if crossings.how[i] >= 0 and (not timed or _resets(core, i)):
+        passes = plan.kind[i] == SEGMENT and _is_plain(core, i)
+        if crossings.how[i] >= 0 and not (passes or crossings.how[i] == CHANGES):
             return False
     old = flow.m.copy()
     for i in range(len(plan.kind)):
@@ -151,12 +154,17 @@ def _is_smooth(core: int, t: float, x: Vector, here: Vector, there: Vector) -> b
 
 
 @helper
-def _resets(core: int, i: int) -> bool:
+def _is_plain(core: int, i: int) -> bool:
+    """Whether a mode changes at a known time, and nothing fires with it."""
+    how = crossings_of(core).how[i]
+    return how == CHANGES or (how == TIME and not _fires(core, i))
+
+
+@helper
+def _fires(core: int, i: int) -> bool:
     """Whether the guard of a mode fires resets or moves memories."""
     plan = plan_of(core)
-    found = False
-    for row in range(len(plan.resets)):
-        found = found or plan.resets[row, 0] == i
+    found = fires_reset(core, i)
     for row in range(len(plan.transitions)):
         found = found or plan.transitions[row, 2] == i
     return found
@@ -188,7 +196,7 @@ def _instant(core: int, t: float, x: Vector, rate: Vector, i: int, out: Vector) 
         find_lags(core, t, x)
         recall(core, t)
     how, row, speed = crossings.how[i], np.zeros(w), 0.0
-    if how == TIME:
+    if how in (TIME, CHANGES):
         line = int(np.searchsorted(plan.timed, i))
         lines, rows = np.empty(2 * len(plan.timed)), np.empty((2 * len(plan.timed), w))
         evaluate(core, TIMED, t, x, lines)

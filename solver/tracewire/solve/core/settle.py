@@ -15,6 +15,7 @@ from tracewire.solve.core.arrays import (
     progress_of,
 )
 from tracewire.solve.core.codes import (
+    CHANGES,
     FINISHED,
     FLOOR,
     MEMORY,
@@ -261,7 +262,7 @@ def _is_carried(core: int, i: int, guard: float, level: float) -> bool:
     `t - 0.7 + wave/2` is a line between the jumps of the wave. What is nearer to zero changes at
     the time that is computed for it."""
     plan = plan_of(core)
-    if plan.kind[i] != SIGN or crossings_of(core).how[i] == TIME:
+    if plan.kind[i] != SIGN or crossings_of(core).how[i] in (TIME, CHANGES):
         return False
     return inside(core, i, guard) < -2 * JUMP * level
 

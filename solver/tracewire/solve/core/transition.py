@@ -17,6 +17,7 @@ from tracewire.solve.core.arrays import (
 )
 from tracewire.solve.core.codes import (
     BOTH,
+    CHANGES,
     CHATTER,
     CHATTER_EVENTS,
     CROSSED,
@@ -41,6 +42,7 @@ from tracewire.solve.core.codes import (
     STICK,
     TIME,
     UP,
+    WAITS,
 )
 from tracewire.solve.core.flow import (
     FREE,
@@ -99,15 +101,9 @@ def happen(core: int, t: float, x: Vector) -> int:
     speed = numbers[0]  # the guard's rate before it fired, along its side
     done = np.zeros(len(plan.resets), dtype=np.int64)
     jumps = np.zeros((modes if len(done) else 0, len(x)))
-    for i in range(modes):  # what a clock takes at a point of a table is behind this point
-        if crossings.how[i] == TIME and plan.kind[i] == SEGMENT:
-            flow.m[i] = crossings.to[i]
     status = _resets(core, t, x, done, fired, speed, turned, jumps)
     if status != FINISHED:
         return status
-    for i in range(modes):
-        if crossings.how[i] == TIME and plan.kind[i] == SEGMENT:
-            flow.m[i] = old[i]
     for reset in range(len(done)):
         i = plan.resets[reset, 0]
         own = i >= 0 and (crossings.how[i] >= 0 or fired[i] >= 0)
@@ -142,7 +138,7 @@ def happen(core: int, t: float, x: Vector) -> int:
     _write_log(core, t, before, x, done, fired, waits, old, bound)
     for i in range(modes):
         shrinks = progress.flights[i, 0] < np.inf
-        if crossings.how[i] >= 0 and crossings.how[i] != TIME and not shrinks:
+        if crossings.how[i] in (GUARD, FRACTION, FORCE, PASSED) and not shrinks:
             status = _count(core, t, i)
             if status != FINISHED:
                 return status
@@ -156,14 +152,15 @@ def happen(core: int, t: float, x: Vector) -> int:
 
 @unit
 def _only_pass_points(core: int, t: float, x: Vector) -> bool:
-    """Let tables of t go on to their next points; whether that is all that happens, as at most
-    samples of a measured input."""
+    """Let tables of t go on to their next points, and clocks; whether that is all that happens, as
+    at most samples of a measured input."""
     flow, plan, crossings = flow_of(core), plan_of(core), crossings_of(core)
     modes = len(plan.kind)
     if is_delayed(core):
         return False
     for i in range(modes):
-        if crossings.how[i] >= 0 and (crossings.how[i] != TIME or plan.kind[i] != SEGMENT):
+        passes = crossings.how[i] == TIME and plan.kind[i] == SEGMENT
+        if crossings.how[i] >= 0 and not (passes or crossings.how[i] == CHANGES):
             return False
     numbers = np.empty((4, modes))
     old, waits = numbers[0], numbers[1]
@@ -316,8 +313,10 @@ def _cross(core: int, t: float, before: Vector, after: Vector, turned: Ints, mar
         elif how == FORCE:
             contact.release(core, i)
             marks[i] = LEFT
-        elif how in (TIME, PASSED):
+        elif how in (TIME, PASSED, CHANGES):
             flow.m[i] = crossings.to[i]
+        elif how == WAITS:
+            marks[i] = LEFT
         elif plan.kind[i] != SIGN:
             flow.m[i] = crossings.to[i]
             if abs(there[i] - here[i]) <= level[i]:
@@ -362,7 +361,7 @@ def _write_log(
         how, up = crossings.how[i], UP if crossings.up[i] else DOWN
         entered = flow.bound[i] == SLIDING and bound[i] == FREE
         gone = flow.bound[i] == FREE and bound[i] != FREE
-        silent = plan.kind[i] in (SEGMENT, MEMORY, DELAY)
+        silent = plan.kind[i] in (SEGMENT, MEMORY, DELAY) or how in (CHANGES, WAITS)
         if how >= 0 and fired[i] < 0 and not (silent or gone or entered):
             log(core, t, SCHEDULED if how == TIME else CROSSING, i, up, before, after)
     for i in range(len(plan.kind)):
