@@ -36,6 +36,9 @@ class CandidateOptions:
     """Choices of the shapes of one candidate that are screened, at most."""
     memory_tolerance: float = 1e-4
     """The relative tolerance of what memories put out: a screen needs no more."""
+    memory_steps: int = 5
+    """Steps between two samples, on average, at which memories that run together are split: one of
+    them needs so short steps. The others of rigs took 1 to 3."""
     pure_tone: float = 0.02
     """The part of a drive's variance that its sine may leave."""
     longest_lag: float = 0.25

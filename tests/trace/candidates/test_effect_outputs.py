@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -72,6 +73,24 @@ def test_outputs_at_some_samples_are_those_of_all() -> None:
     assert part.keys() == whole.keys()
     for variant, (values,) in part.items():
         np.testing.assert_allclose(values, whole[variant][0][some], atol=1e-3, err_msg=str(variant))
+
+
+def test_one_memory_that_needs_short_steps_runs_without_the_others() -> None:
+    """Whether a group of memories is split makes no difference to what they put out, but for what
+    the loose tolerance of a screen leaves where the rate of a `dahl` bends."""
+    run, samples = moving(), [np.arange(len(T))]
+    model, known = candidates_of(TEXT, [run])
+    chosen = [known[f"{name} @ force"] for name in ("dahl", "hysteresis", "play")]
+    together, apart = (
+        effect_outputs(
+            model, chosen, [run], samples, replace(OPTIONS.candidate, memory_steps=most), pytest.fail
+        )
+        for most in (1_000_000, 0)
+    )  # fmt: skip
+    assert apart.keys() == together.keys()
+    assert len(apart) > len(chosen)
+    for variant, (values,) in apart.items():
+        np.testing.assert_allclose(values, together[variant][0], atol=5e-3, err_msg=str(variant))
 
 
 def test_memoryless_effects_follow_their_formulas() -> None:

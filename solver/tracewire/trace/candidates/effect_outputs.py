@@ -88,13 +88,11 @@ def effect_outputs(
     while queue:
         group = queue.pop()
         try:
-            found |= _simulate_outputs(
-                model.diagram, group, trajectories, samples, options.memory_tolerance
-            )
+            found |= _simulate_outputs(model.diagram, group, trajectories, samples, options)
         except Interrupted:
             raise
         except TracewireError as error:
-            if len(group) > 1:  # one of them cannot be computed: find out which
+            if len(group) > 1:  # one of them cannot be computed, or is slow: find out which
                 middle = len(group) // 2
                 queue += [group[:middle], group[middle:]]
             else:
@@ -135,9 +133,13 @@ def _simulate_outputs(
     variants: Sequence[Variant],
     trajectories: Sequence[Trajectory],
     samples: Sequence[Samples],
-    rtol: float,
+    options: CandidateOptions,
 ) -> dict[Variant, list[Vector]]:
-    """The outputs of several variants, in one small diagram whose inputs are the signals."""
+    """The outputs of several variants, in one small diagram whose inputs are the signals.
+
+    Raises SimulationError: one variant cannot be computed, or one of several needs so many steps
+    that the others, which take them too, had better run without it.
+    """
     signals = dict.fromkeys(s for v in variants for s in v.candidate.signals.values())
     inputs = {signal: f"input_{number}" for number, signal in enumerate(signals)}
     blocks = [f"output_{number}" for number in range(len(variants))]
@@ -167,9 +169,11 @@ def _simulate_outputs(
         sizes = [float(np.max(np.abs(x))) for _, x in given.values()]
         least = min([1.0, *(size for size in sizes if size > 0)])
         kept = np.union1d([0], rows)  # memories begin where the record does
+        rtol = options.memory_tolerance
+        limits = {"steps": options.memory_steps * len(run.t)} if len(variants) > 1 else None
         result = simulate(
             model, parameters=own, times=run.t[kept], inputs=given, rtol=rtol,
-            atol=1e-3 * rtol * least,
+            atol=1e-3 * rtol * least, limits=limits,
         )  # fmt: skip
         for variant, name in zip(variants, outputs, strict=True):
             output = result.signals[name][np.searchsorted(kept, rows)]
