@@ -16,6 +16,7 @@ from tracewire.trace.choose.remainder import (
     error_left,
     explained_share,
     held_out_errors,
+    relative_error,
     remainders,
 )
 from tracewire.trace.choose.settling import describe_few_samples, describe_settling
@@ -110,8 +111,8 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
 
     Windows whose starts are free swallow what is slower than they are: nothing is missing only
     where the declared model is near the noise on the longest windows that it bears, too. Effects
-    must take the greater part of what was above the noise; and three small laws follow any smooth
-    force, so that three must predict.
+    must take most of what was above the noise, or predict; and three small laws follow any
+    smooth force, so that three must predict, too.
     """
     slow = is_slow_noise(search, best)
     if not slow and not is_at_noise(search, best):
@@ -119,7 +120,7 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
     final = refine(search, first, best)
     if final.best.effects:
         few = len(final.best.effects) < search.options.many_effects
-        if not few or _share_of_excess(final) < search.options.explained:
+        if not few or _share_of_excess(final) < search.options.explained_at_noise:
             return None
         if final.best.length > best.length and final.best.reduced_chi2 > search.options.lost:
             search.words.append(_describe_longer_windows(best, final.best))
@@ -246,7 +247,7 @@ def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> 
     horizons they explain all there is."""
     options, trials = prediction.options, prediction.chosen.trials
     at_all = all(trial.reduced_chi2 <= options.at_noise for trial in trials)
-    least, why = _least_share(prediction.chosen, options)
+    least, why = _least_share(prediction, options)
     if share < least or (surely < options.explained_surely and not at_all):
         taken = f"takes {100 * max(share, 0):.0f} % of the excess error on held-out blocks away"
         return taken + (why if options.explained <= share < least else "")
@@ -256,9 +257,12 @@ def _describe_shortfall(prediction: Prediction, share: float, surely: float) -> 
     return f"leaves {100 * left:.0f} % of the error on a typical held-out block (geometric mean)"
 
 
-def _least_share(chosen: Finalist, options: TraceOptions) -> tuple[float, str]:
+def _least_share(prediction: Prediction, options: TraceOptions) -> tuple[float, str]:
     """The share of the excess that the effects of a model must explain, and in words why more than
-    others: waves and drifts follow a part of anything, and so do many laws together."""
+    others: waves and drifts follow a part of anything, and so do many laws together; and what is
+    left by a model that explains nearly all motion is as small as what any rig has besides, unless
+    a law takes the place of a declared one."""
+    chosen = prediction.chosen
     effects = chosen.trials[0].effects
     more = len(effects) - len(chosen.dropped)
     if more >= options.many_effects:
@@ -269,8 +273,13 @@ def _least_share(chosen: Finalist, options: TraceOptions) -> tuple[float, str]:
         beside = " beside another effect" if more > 1 else ""
         what = f"a wave or a drift{beside}, which follows a part of anything, needs"
     else:
-        return options.explained, ""
-    return least, f", and {what} {100 * least:.0f} %"
+        least, what = options.explained, ""
+    left = relative_error(prediction.models[0].trials[-1])
+    small = left < options.small_error and not chosen.dropped
+    if small and least < options.explained_small:
+        least = options.explained_small
+        what = f"an effect behind an error of {100 * left:.2g} % of the motion needs"
+    return least, f", and {what} {100 * least:.0f} %" if what else ""
 
 
 def _only_uncommon(model: Finalist, options: TraceOptions) -> bool:
