@@ -158,8 +158,8 @@ class Watch(NamedTuple):
 class Crossings(NamedTuple):
     """What reached a level at an instant, per mode: `how` (-1: nothing), `to`, `up`.
 
-    `how` is GUARD, FRACTION of a slide, FORCE of a contact, or TIME; `to` is the mode beyond, `up`
-    1 where the guard went up.
+    `how` is one of GUARD to WAITS (`codes`): a guard, the fraction of a slide, the force of a
+    contact, a known time and so on; `to` is the mode beyond, `up` 1 where the guard went up.
 
     An instant has stages, each of which ends where all modes stand still and something writes
     states anew. `x` (n,), `m` and `bound`: how the last stage began; `known` (1,): 1 where it has

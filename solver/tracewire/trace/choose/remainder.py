@@ -67,7 +67,7 @@ def relative_error(trial: Trial) -> float:
     windows = trial.windows
     left = np.mean(np.concatenate(windows.residuals) ** 2, axis=0)
     motion, noise = [], []
-    for name in {segment.measured.name for segment in windows.segments}:
+    for name in dict.fromkeys(segment.measured.name for segment in windows.segments):
         own = [segment for segment in windows.segments if segment.measured.name == name]
         t = np.concatenate([segment.t for segment in own])
         samples = np.concatenate([segment.samples() for segment in own])
