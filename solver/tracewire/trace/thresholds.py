@@ -151,8 +151,8 @@ class ScreenOptions:
     """Of the random numbers of the draws."""
 
     far_from_data: float = 0.05
-    """The root mean square of a residual, in units of the standard deviation of the signal, from
-    which on a model moves so far from the data that effects are judged along these."""
+    """The root mean square of a residual over that of what the signal moves beside a straight line,
+    from which on a model moves so far from the data that effects are judged along these."""
     torque_nodes: int = 120
     """Nodes, at most, of the torques that let a window of a model far from the data follow them."""
     torque_bend: float = 0.3

@@ -11,7 +11,7 @@ import pytest
 import tracewire as tw
 from tracewire.trace.choose import verdict
 from tracewire.trace.choose.finalists import _extend_without, _takes_all
-from tracewire.trace.choose.remainder import error_left, relative_error
+from tracewire.trace.choose.remainder import error_left
 from tracewire.trace.choose.verdict import _only_uncommon, is_slow_noise, judge_at_noise
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import AtBound
@@ -312,26 +312,6 @@ def test_effects_behind_an_error_as_small_as_any_rig_has_must_explain_nearly_all
     told = verdict._describe_shortfall(chosen, share, share - 0.04)
     taken = f"takes {100 * share:.0f} % of the excess error on held-out blocks away, and {needs}"
     assert told == (taken if needs else "")
-
-
-@pytest.mark.parametrize("slope", [0.0, 50.0])
-def test_the_error_is_a_part_of_what_a_signal_moves_beside_a_straight_line(slope: float) -> None:
-    """As an angle that goes round does: its turns are no motion that a model is good at."""
-    t = np.linspace(0.0, 7.0, 701)
-    samples = np.column_stack([slope * t + np.sin(2 * np.pi * t), 3 * np.cos(2 * np.pi * t)])
-    parts = [np.arange(0, 300), np.arange(300, 701)]
-    measured = SimpleNamespace(name="run")
-    segments = [
-        SimpleNamespace(measured=measured, t=t[rows], samples=lambda rows=rows: samples[rows])
-        for rows in parts
-    ]
-    residuals = [np.full((len(rows), 2), [4.0, 1.0]) for rows in parts]
-    criterion = SimpleNamespace(sigma={"run": np.array([0.01, 0.02])})
-    trial: Any = SimpleNamespace(
-        windows=SimpleNamespace(segments=segments, residuals=residuals, criterion=criterion)
-    )
-    moves = np.sqrt(0.5)  # of the sine: its line has a slope of 3/(pi*T), which takes a little away
-    assert relative_error(trial) == pytest.approx(0.04 / moves, rel=0.02)
 
 
 @pytest.mark.parametrize(("cost", "words"), [(0.5, "65 % more"), (-0.5, "39 % less")])

@@ -16,7 +16,6 @@ from tracewire.trace.choose.remainder import (
     error_left,
     explained_share,
     held_out_errors,
-    relative_error,
     remainders,
 )
 from tracewire.trace.choose.settling import describe_few_samples, describe_settling
@@ -43,6 +42,7 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.refinement import FinalModels, Rival, refine
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.relative_error import relative_error
 from tracewire.trace.trials.trial import Trial
 
 

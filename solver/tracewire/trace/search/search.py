@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from tracewire.errors import FitError, SimulationError
 from tracewire.residual import Section, Segment
 from tracewire.trace.candidates.candidate import Candidate
@@ -26,6 +24,7 @@ from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
 from tracewire.trace.trials.judge import GateResult, judge_on_gate
 from tracewire.trace.trials.precision import is_loose, tighter
+from tracewire.trace.trials.relative_error import relative_error
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 
@@ -292,10 +291,8 @@ class Search:
         """The screen beside a model far from the data, along these; None where it is near them, or
         where none can be."""
         options = self.options
-        near = (
-            trial.reduced_chi2 < options.search.far or misfit(trial) < options.screen.far_from_data
-        )
-        if near or not self.free:
+        at_noise = trial.reduced_chi2 < options.search.far
+        if at_noise or relative_error(trial) < options.screen.far_from_data or not self.free:
             return None
         along = assimilate(self.problem, trial, self.linearise(trial))
         if along is None:
@@ -356,17 +353,6 @@ class Search:
                 if not verdict.passed:
                     return verdict, number
         return verdict, None
-
-
-def misfit(trial: Trial) -> float:
-    """The root mean square of what a model leaves in its windows, in units of the standard
-    deviation of the signal there, the largest of any signal."""
-    windows = trial.windows
-    series = {s.measured.name: s.measured for s in windows.segments}
-    sigma = np.sqrt(np.mean([windows.criterion.sigma[name] ** 2 for name in series], axis=0))
-    left = np.sqrt(np.mean(np.concatenate(windows.residuals) ** 2, axis=0)) * sigma
-    samples = np.concatenate([segment.samples() for segment in windows.segments])
-    return float(np.max(left / np.maximum(np.std(samples, axis=0), 1e-300)))
 
 
 def _is_simpler(other: RefitResult, one: RefitResult) -> bool:
