@@ -75,7 +75,7 @@ def test_fit_as_json(call: Any, decay: Path) -> None:
     assert list(data) == [
         *("method", "values", "before", "errors", "intervals", "correlation", "not_determined"),
         *("at_bounds", "unmoved", "words", "remarks", "starts", "criterion_before", "criterion"),
-        *("evaluations", "iterations", "exitflag", "message", "seconds", "seed"),
+        *("evaluations", "iterations", "exitflag", "message", "unfinished", "seconds", "seed"),
         *("comparisons", "profiles", "written"),
     ]
     assert data["method"] == "fminsearch"

@@ -63,6 +63,19 @@ def test_a_series_that_is_too_short_for_a_trace_is_not_sent_there() -> None:
     assert "`tracewire trace` takes no series below 40 samples" in told.words
 
 
+def test_a_fit_that_has_not_come_to_its_end_is_not_sent_to_a_trace() -> None:
+    """It is told first, as the residual of each series would lead elsewhere."""
+    few = {"MaxIter": 3}
+    found = fit(made(LINE), [series(2 * LONG + 1, t=LONG)], method="fminsearch", options=few)
+    (told,) = diagnose(found)
+    assert "times the noise and correlated over" in told.words
+    assert not told.is_missing
+    assert "trace" not in told.words
+    words = fit_words(found)
+    assert words[0].startswith("the search ended before a minimum: ")
+    assert words[0].endswith(". Until it reaches one, no residual tells that something is missing.")
+
+
 def test_noise_larger_than_declared_is_no_missing_effect() -> None:
     found = one(0.1 * np.random.default_rng(3).standard_normal(601), sigma={"x": 0.02})
     assert found.declared

@@ -395,8 +395,8 @@ def test_a_search_that_ends_before_a_minimum_says_so() -> None:
     noisy = series(oscillation(T, 0.9) + NOISE)
     few = optimset(MaxIter=5, Display="off")
     found = fitted(OSCILLATOR, noisy, method="fminsearch", options=few)
-    assert found.remarks[0].startswith("the search ended before a minimum: the slope there leads ")
-    assert fitted(OSCILLATOR, noisy).remarks == ()
+    assert found.unfinished.startswith("the search ended before a minimum: the slope there leads ")
+    assert fitted(OSCILLATOR, noisy).unfinished == ""
 
 
 def test_a_search_that_ends_before_a_minimum_has_not_converged(
@@ -405,10 +405,10 @@ def test_a_search_that_ends_before_a_minimum_has_not_converged(
     exact = series(oscillation(T, 0.9))
     assert fitted(OSCILLATOR, exact).message.startswith("converged")
     module = sys.modules[fit.__module__]
-    monkeypatch.setattr(module, "unfinished", lambda *given: ["the search ended"])
+    monkeypatch.setattr(module, "unfinished", lambda *given: "the search ended")
     found = fitted(OSCILLATOR, exact)
     assert found.message.startswith("ended before a minimum")
-    assert found.remarks[0] == "the search ended"
+    assert found.unfinished == "the search ended"
 
 
 def test_a_series_that_begins_elsewhere_is_told() -> None:
@@ -442,12 +442,12 @@ def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large
     criterion = SimpleNamespace(scales=np.array([1.0]))
     slope, vector = np.ones((50, 1)), np.ones(50)
     told = SimpleNamespace(names=("p",), at_bounds=(), errors={"p": 2.0})
-    (remark,) = unfinished(told, criterion, slope, vector, "fminsearch")  # type: ignore[arg-type]
+    remark = unfinished(told, criterion, slope, vector, "fminsearch")  # type: ignore[arg-type]
     assert remark.startswith("the search ended before a minimum: the slope there promises to ")
     assert remark.endswith("go on with --method least_squares")
     settled = np.tile([1.0, -1.0], 25)
-    assert unfinished(told, criterion, slope, settled, "fminsearch") == []  # type: ignore[arg-type]
-    (again,) = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
+    assert unfinished(told, criterion, slope, settled, "fminsearch") == ""  # type: ignore[arg-type]
+    again = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
     assert "least_squares gains nothing more from here: try --method growing_windows" in again
 
 

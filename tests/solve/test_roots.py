@@ -55,3 +55,30 @@ def test_a_tank_that_is_empty_has_no_flow(method: str, drain: float) -> None:
     if drain:
         empty = 10 * (1 - drain / 0.2 * np.log(1 + 0.2 / drain))
     assert found.final["h"] == pytest.approx(-drain * (20 - empty), abs=1e-7)
+
+
+@pytest.mark.parametrize("begin", [0.0, -0.1, 3.0, 100.0])
+@pytest.mark.parametrize("method", METHODS)
+def test_two_bodies_strike_far_from_zero_too(method: str, begin: float) -> None:
+    """Their distance is known to the rounding of where they are, and the force of the contact is
+    not defined beyond it."""
+    found = run(
+        f"""
+span: [0, 40]
+blocks:
+  x: {{type: integrator, of: v, start: {begin}}}
+  v: {{type: integrator, of: pull}}
+  y: {{type: integrator, of: w, start: {begin + 1.0}}}
+  w: {{type: integrator, of: -pull, start: 0.05}}
+  apart: {{type: sum, of: [y, -x]}}
+  pull: {{type: expression, formula: "apart - (40*(0.2 - apart)**1.5 if apart <= 0.2 else 0)"}}
+""",
+        method=method,
+        rtol=1e-9,
+    )
+    x, y, v, w = (found.final[name] for name in ("x", "y", "v", "w"))
+    deep = max(0.2 - (y - x), 0.0)
+    energy = (v**2 + w**2 + (y - x) ** 2) / 2 + 40 / 2.5 * deep**2.5
+    assert energy == pytest.approx(0.50125, rel=1e-5)
+    assert v + w == pytest.approx(0.05, abs=1e-9)
+    assert len(found.events) > 20

@@ -40,7 +40,7 @@ def test_coulomb_friction_is_no_stribeck_friction(
     name: str, draw: int, place: str, level: float, tmp_path: Path
 ) -> None:
     (case,) = chosen(name, draw=draw)
-    found = trace(compile(read(make(case, tmp_path))))
+    found = trace(compile(read(make(case, tmp_path))), options={"only": [place]})
     assert found.verdict == "effect"
     (effect,) = found.effects
     assert (effect.name, effect.place) == ("coulomb", place)

@@ -44,7 +44,8 @@ class Diagnosis:
     `independence` holds by measured input, by signal of time alone that drives the model, and by
     the simulated signal itself, the probability that something independent of it follows it as
     closely. `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it
-    in sentences, `is_missing` whether it says that something is missing.
+    in sentences, `is_missing` whether it says that something is missing, which no residual of a
+    search that ended before a minimum does.
     """
 
     series: str
@@ -251,7 +252,7 @@ def _diagnosis(
         driven=driven,
         estimate=estimate,
     )
-    return _with_words(found, measured)
+    return _with_words(found, measured, finished=not fit.unfinished)
 
 
 def _memory(residual: Vector) -> int:
@@ -261,7 +262,7 @@ def _memory(residual: Vector) -> int:
     return int(below[0]) if len(below) else len(correlation)
 
 
-def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
+def _with_words(found: Diagnosis, measured: Measured, finished: bool) -> Diagnosis:
     noise, limit = found.noise, DIAGNOSIS.at_noise * found.noise
     source = "declared noise" if found.declared else "noise"
     if found.driven is not None:
@@ -294,19 +295,10 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
             "It may be noise alone: the noise is estimated to lie between "
             f"{between} ({estimate.method}). Write its `sigma:` where it is known",
         ]
-    elif lacks := found.size > limit and not (found.is_white and not depends):
+    elif found.size > limit and not (found.is_white and not depends):
         correlated = "" if found.is_white else f" and {over}"
         words = [f"the residual is {times:.2g} times the {source}{correlated}"]
-        missing = "Something is missing"
-        if estimate and not found.declared and times < DIAGNOSIS.coloured:
-            missing += (
-                ", or the noise itself is correlated: its estimate counts the white part alone"
-            )
-        words.append(missing)
-        if len(measured.t) < WINDOW.traced:
-            words.append(f"`tracewire trace` takes no series below {WINDOW.traced} samples")
-        else:
-            words.append("`tracewire trace` looks for it")
+        lacks = finished
     elif found.size > limit:
         larger = "than declared" if found.declared else "than its differences tell"
         words = [f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"]
@@ -318,6 +310,17 @@ def _with_words(found: Diagnosis, measured: Measured) -> Diagnosis:
         words = [f"white, and {times:.2g} times the declared noise: sigma is declared too large"]
     else:
         words = [f"white, at the {source}"]
+    if lacks:
+        missing = "Something is missing"
+        if estimate and not found.declared and times < DIAGNOSIS.coloured:
+            missing += (
+                ", or the noise itself is correlated: its estimate counts the white part alone"
+            )
+        words.append(missing)
+        if len(measured.t) < WINDOW.traced:
+            words.append(f"`tracewire trace` takes no series below {WINDOW.traced} samples")
+        else:
+            words.append("`tracewire trace` looks for it")
     if depends:
         words.append(f"The residual depends on {' and '.join(depends)}, which drives the model")
     if found.outliers > 0.005 and not lacks:  # what a model lacks is large where it acts

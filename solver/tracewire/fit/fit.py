@@ -201,9 +201,9 @@ def fit(
         parameters=dict(parameters or {}),
         rtol=rtol,
         interrupted=result.interrupted,
+        unfinished=short,
         remarks=(
             *(store.remarks if store else ()),
-            *short,
             *rises(criterion_before, value, method),
             *starts_elsewhere(model, series, shown),
             *begins_fast(model, series, found_starts),

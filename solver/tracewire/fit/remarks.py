@@ -29,9 +29,9 @@ BEGIN_ELSEWHERE = (
 
 def unfinished(
     uncertainty: Uncertainty, criterion: Criterion, matrix: Matrix, vector: Vector, method: str
-) -> list[str]:
-    """That the search ended before a minimum: a Gauss-Newton step goes beyond the errors, or
-    promises to take away much of the sum of squares."""
+) -> str:
+    """That the search ended before a minimum, or nothing: a Gauss-Newton step goes beyond the
+    errors, or promises to take away much of the sum of squares."""
     names = uncertainty.names
     held = {names.index(name) for name in uncertainty.at_bounds}
     moved = [j for j in range(matrix.shape[1]) if j not in held]
@@ -46,17 +46,17 @@ def unfinished(
     go_on = BEGIN_ELSEWHERE if method == "least_squares" else GO_ON
     promised = np.linalg.norm(vector + matrix @ step) / max(float(np.linalg.norm(vector)), 1e-300)
     if not far and promised < DIAGNOSIS.promised:
-        return [
+        return (
             f"the search {ENDED}: the slope there promises to lower the residual to "
             f"{promised:.2g} of it; {go_on}"
-        ]
+        )
     if not far:
-        return []
+        return ""
     most = max(far, key=lambda name: far[name])
-    return [
+    return (
         f"the search {ENDED}: the slope there leads {most} {far[most]:.2g} standard "
         f"errors further, so errors and intervals say nothing yet; {go_on}"
-    ]
+    )
 
 
 def rises(before: float, after: float, method: str) -> list[str]:

@@ -84,7 +84,8 @@ class Fit(Result):
     plus the number of free parameters. `history` holds each new best of the search. `parameters`
     were given for the fit, `rtol` is that of its runs. `exitflag` is 1 where the search ended by
     its own tolerance, which may be before a minimum (`message`), 0 where a limit ended it, -1 where
-    an output function or Ctrl-C did (`interrupted`). `uncertainty` is what the data say of the
+    an output function or Ctrl-C did (`interrupted`). `unfinished` says that the search ended before
+    a minimum, and how to go on; it is empty at a minimum. `uncertainty` is what the data say of the
     values, `remarks` what a reader must know: runs that failed, series whose data are odd.
     """
 
@@ -110,6 +111,7 @@ class Fit(Result):
     parameters: Mapping[str, float] = field(default_factory=dict)
     rtol: float = 1e-6
     interrupted: bool = False
+    unfinished: str = ""
     remarks: tuple[str, ...] = field(default_factory=tuple)
 
     @property

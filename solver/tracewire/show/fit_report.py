@@ -28,6 +28,7 @@ from tracewire.show.fit_tables import (
     sentence,
     starts_table,
     tied_table,
+    unfinished_words,
 )
 from tracewire.show.limits import FIT
 from tracewire.show.parameter_figures import plot_convergence, plot_correlation, plot_parameters
@@ -94,7 +95,13 @@ def _result(fit: Fit) -> Section:
         Figure("parameters.png", "Fitted values and their 95 % intervals",
                partial(plot_parameters, fit)),
     ) if fit.values else ()  # fmt: skip
-    words = (what, fit_text(fit), *ended, *([ERRORS] if fit.values else []))
+    words = (
+        what,
+        fit_text(fit),
+        *unfinished_words(fit),
+        *ended,
+        *([ERRORS] if fit.values else []),
+    )
     return Section("Result", words, tables, figures=figures, points=remark_words(fit))
 
 

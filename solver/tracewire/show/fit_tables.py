@@ -172,10 +172,24 @@ def fit_text(fit: Fit) -> str:
 
 
 def fit_words(fit: Fit) -> tuple[str, ...]:
-    """What a reader of the tables must know, a paragraph each: what the data do not determine, what
-    is left in the residual, and what was odd.
+    """What a reader of the tables must know, a paragraph each: whether the search came to its end,
+    what the data do not determine, what is left in the residual, and what was odd.
     """
-    return (*identifiability_words(fit), *residual_words(fit, diagnose(fit)), *remark_words(fit))
+    return (
+        *unfinished_words(fit),
+        *identifiability_words(fit),
+        *residual_words(fit, diagnose(fit)),
+        *remark_words(fit),
+    )
+
+
+def unfinished_words(fit: Fit) -> tuple[str, ...]:
+    """That the search ended before a minimum."""
+    if not fit.unfinished:
+        return ()
+    return (
+        f"{fit.unfinished}. Until it reaches one, no residual tells that something is missing.",
+    )
 
 
 def identifiability_words(fit: Fit) -> tuple[str, ...]:

@@ -44,6 +44,7 @@ def _data(found: Fit) -> dict[str, object]:
         "iterations": found.iterations,
         "exitflag": found.exitflag,
         "message": found.message,
+        "unfinished": found.unfinished,
         "seconds": found.seconds,
         "seed": found.seed,
         "comparisons": [

@@ -14,6 +14,7 @@ from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, unit
 
 POLISH = 3  # corrections of a located instant
+NEAR = 1e-14  # of the span: an instant is exact
 BACK = 1e-4  # of a step: how far back a secant begins
 
 
@@ -49,14 +50,34 @@ def polish(core: int, theta: float, row: int) -> None:
         change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
         if not 0 < h + change <= whole:
             return
-        if abs(change) <= 1e-14 * progress.now[LENGTH]:
-            if change > 0.0 and h + 2 * change <= whole:
-                methods.end_at(core, method, t, x, trial.rate, h + 2 * change)
+        if abs(change) <= NEAR * progress.now[LENGTH]:
+            if change > 0.0:
+                _end_beyond(core, h, change, whole, row)
             return
         if abs(change) > 0.1 * whole:
             return
         h += change
         methods.end_at(core, method, t, x, trial.rate, h)
+
+
+@unit
+def _end_beyond(core: int, h: float, change: float, whole: float, row: int) -> None:
+    """Make the trial end beyond the guard that is `change` after h. Rounding may hide so short a
+    way, as where two bodies are far from zero and the guard is their distance: it is doubled then.
+    """
+    progress, trial, watched = progress_of(core), trial_of(core), watch_of(core)
+    t, method, i = trial.ends[0], progress.ints[CURRENT], watched.mode[row]
+    guards, pinned = np.empty(len(flow_of(core).bound)), np.empty(len(progress.x))
+    ahead = 2.0 * change
+    while h + ahead <= whole:
+        methods.end_at(core, method, t, progress.x, trial.rate, h + ahead)
+        _end(core, t + h + ahead, pinned)
+        guard_values(core, t + h + ahead, pinned, guards)
+        if watched.sign[row] * (guards[i] - watched.level[row]) < 0.0:
+            return
+        if ahead > NEAR * progress.now[LENGTH]:
+            return
+        ahead *= 2.0
 
 
 @unit
