@@ -16,6 +16,7 @@ from tracewire.residual.initial_states import fit_initial_states
 from tracewire.residual.levenberg_marquardt import fit_windows
 from tracewire.residual.windows import (
     Section,
+    Windows,
     cut_windows,
     evaluate_windows,
     project_out_initial_states,
@@ -269,6 +270,43 @@ def test_what_a_run_hardly_forgets_is_free_where_a_window_follows_no_other() -> 
         errors.append(float(np.abs(fitted.residuals[0]).max()))
     assert errors[0] > 1.0, "the load swings on from before the run began"
     assert errors[1] < 0.05
+
+
+SOFT = """\
+span: [0, 30]
+blocks:
+  x: {type: integrator, of: v, start: 1}
+  v: {type: integrator, of: force}
+  u: {type: sine, amplitude: 0.6, omega: 1.7}
+  spring: {type: stiffness, of: x, k: 9}
+  soft: {type: hysteresis, rate: v, level: 1.5, deflection: 0.8}
+  force: {type: sum, of: [u, spring, soft]}
+"""
+
+
+def test_a_window_alone_remembers_what_the_windows_before_it_have_left() -> None:
+    """As where the other ones are left out of a fit: it goes on as in the chain of all."""
+    model = compile(read_text(SOFT), record=["x", "v"])
+    t = np.arange(0.0, 30.0, 0.02)
+    run = simulate(model, times=t, rtol=1e-10)
+    m = Measured("run", "train", t, {"x": run["x"], "v": run["v"]}, start={"x": None, "v": None})
+    segments = cut_windows(model, Section(m, 0, len(t)), 12, ("x", "v"))
+
+    def run_all(segments: list[Segment]) -> Windows:
+        segments = with_memory(model, segments)
+        criterion = Criterion(
+            model, segments, [], {}, sigma={"x": 1.0, "v": 1.0}, weighting="sum", chained=True
+        )
+        return fit_initial_states(evaluate_windows(criterion))
+
+    chain = run_all(segments)
+    alone = chain.segments[60:61]
+    assert with_memory(model, alone)[0].begin == segments[60].begin
+    assert max(chain.squares) < 1e-8
+    assert run_all(alone).rss < 1e-8
+    (ahead,) = with_memory(model, segments[60:61])
+    assert ahead.begin == pytest.approx(segments[60].begin - 0.48), "twice its length"
+    assert run_all([ahead]).rss > 1e-4, "it has not forgotten that the hysteresis begins at 0"
 
 
 STOPPED = """\

@@ -24,7 +24,8 @@ class Segment:
     """A stretch of a measured series that one run is compared with.
 
     The run begins at `begin` with the states of `start` (those not named: the diagram's); the
-    states in `free` are unknowns. `rows` are the samples of the series that count.
+    states in `free` are unknowns. `rows` are the samples of the series that count. `memory` are
+    states at `begin` that are not free, as a run up to there has left them.
     """
 
     measured: Measured
@@ -32,6 +33,7 @@ class Segment:
     rows: NDArray[np.intp]
     start: Mapping[str, float] = field(default_factory=dict)
     free: tuple[str, ...] = ()
+    memory: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def t(self) -> Vector:

@@ -119,10 +119,11 @@ def with_memory(
     """Windows whose runs find what a model remembers beside the states that are free at a start.
 
     A lag or a hysteresis begins as its block says, which is wrong inside a record. A lag of an
-    input is where the input has led it, with the parameters in `values`. Of what else is
-    remembered the run of a window that follows no other begins ahead of it, by twice its length or
-    a tenth of the series. Other states that are `lasting` are free there: no run ahead would forget
-    where they began. So is a lag where a record begins, which tells nothing of its input before.
+    input is where the input has led it, with the parameters in `values`. What else is remembered
+    is as an earlier run has left it (`memory`). Where there was none, the run of a window that
+    follows no other begins ahead of it, by twice its length or a tenth of the series. Other states
+    that are `lasting` are free there: no run ahead would forget where they began. So is a lag where
+    a record begins, which tells nothing of its input before.
     """
     found: list[Segment] = []
     remembers = any(mode.kind == "memory" for mode in model.modes)
@@ -137,11 +138,12 @@ def with_memory(
             start = {**dict.fromkeys(unknown, 0.0), **segment.start}
             free = tuple(dict.fromkeys((*segment.free, *unknown)))
             segment = replace(segment, start=start, free=free)
-        known = set(model.states) <= {*segment.free, *led} and not remembers
+        memory = {**segment.memory, **led}
+        known = set(model.states) <= {*segment.free, *memory} and not remembers
         if led and row < 0:
             segment = replace(segment, start={**led, **segment.start})
-        elif led and known:
-            segment = replace(segment, start={**segment.start, **led})
+        elif memory and known:
+            segment = replace(segment, start={**segment.start, **memory})
         elif not known and row > 0 and segment.begin >= t[row]:
             most = WINDOW.remembered_windows * len(segment.rows)
             ahead = min(int(WINDOW.remembered * len(t)), most)
@@ -165,7 +167,7 @@ def _begun_at(model: Model, segment: Segment, row: int, values: Mapping[str, flo
     and those that its inputs have led there."""
     states = start_from_data(model, segment.measured, row)
     start = {name: states[name] for name in segment.free if name in states}
-    begun = replace(segment, begin=float(segment.measured.t[row]))
+    begun = replace(segment, begin=float(segment.measured.t[row]), memory={})
     led = _led_by_inputs(model, begun, values)
     return replace(begun, start={**segment.start, **start, **led})
 
@@ -210,8 +212,9 @@ class Windows:
         found = []
         for n, segment in enumerate(self.criterion.segments):
             left = self.linearisations[n - 1].final if self.criterion.follows(n) else {}
-            start = {**segment.start, **left, **self.starts[n]}
-            found.append(replace(segment, start=start))
+            memory = {name: x for name, x in left.items() if name not in segment.free}
+            start = {**segment.start, **memory, **self.starts[n]}
+            found.append(replace(segment, start=start, memory=memory or segment.memory))
         return found
 
 

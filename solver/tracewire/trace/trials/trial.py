@@ -491,6 +491,8 @@ def _refuse_failed(criterion: Criterion, windows: Windows) -> None:
 def _drop_foreign_starts(segment: Segment, model: Model) -> Segment:
     """The segment without starts of states that the model has not: another effect's memory."""
     start = {name: value for name, value in segment.start.items() if name in model.states}
+    memory = {name: value for name, value in segment.memory.items() if name in model.states}
     free = tuple(name for name in segment.free if name in model.states)
     same = len(start) == len(segment.start) and len(free) == len(segment.free)
-    return segment if same else replace(segment, start=start, free=free)
+    same = same and len(memory) == len(segment.memory)
+    return segment if same else replace(segment, start=start, free=free, memory=memory)
