@@ -14,7 +14,6 @@ from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, unit
 
 POLISH = 3  # corrections of a located instant
-NEAR = 1e-14  # of the span: an instant is exact
 BACK = 1e-4  # of a step: how far back a secant begins
 
 
@@ -50,7 +49,7 @@ def polish(core: int, theta: float, row: int) -> None:
         change = -(guards[i] - watched.level[row]) / along[i] if along[i] != 0.0 else 0.0
         if not 0 < h + change <= whole:
             return
-        if abs(change) <= NEAR * progress.now[LENGTH]:
+        if abs(change) <= ROOT * progress.now[LENGTH]:
             if change > 0.0:
                 _end_beyond(core, h, change, whole, row)
             return
@@ -75,7 +74,7 @@ def _end_beyond(core: int, h: float, change: float, whole: float, row: int) -> N
         guard_values(core, t + h + ahead, pinned, guards)
         if watched.sign[row] * (guards[i] - watched.level[row]) < 0.0:
             return
-        if ahead > NEAR * progress.now[LENGTH]:
+        if ahead > ROOT * progress.now[LENGTH]:
             return
         ahead *= 2.0
 

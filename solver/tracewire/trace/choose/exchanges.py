@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from tracewire.errors import FitError
@@ -22,12 +23,27 @@ def exchange_single_effects(pool: ModelPool) -> None:
 
 
 def exchange_effects(pool: ModelPool, size: int) -> None:
-    """The best models of a size with each effect exchanged for those that may stand there, while
-    there is time."""
+    """The best models of a size with each effect exchanged for those that may stand there: those
+    that look like it to the declared model's residual, and those that promise most in its place.
+    First the one that takes least, however long the search was, as it was found where another one
+    hid much; then those that take more, while there is time."""
     for model in pool.best(size, pool.options.exchanged):
-        for name in sorted(model.names):
-            if pool.spent <= pool.options.most_steps:
-                _replace_effect(pool, model, name, _alternatives(pool, model, name))
+        for number, name in enumerate(_least_first(pool, model)):
+            if number == 0 or pool.spent <= pool.options.most_steps:
+                others = [*_look_alikes(pool, name), *_alternatives(pool, model, name)]
+                new = {str(one): one for one in others if str(one) not in model.names}
+                _replace_effect(pool, model, name, list(new.values()))
+
+
+def _least_first(pool: ModelPool, model: Finalist) -> list[str]:
+    """The effects of a model by the squared error that is left without them, as far as models that
+    lack one are known."""
+
+    def left_without(name: str) -> float:
+        smaller = pool.models.get((model.names - {name}, model.dropped))
+        return smaller.rss if smaller is not None else math.inf
+
+    return sorted(sorted(model.names), key=left_without)
 
 
 def _look_alikes(pool: ModelPool, name: str) -> list[PlacedEffect]:

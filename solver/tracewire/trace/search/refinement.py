@@ -10,9 +10,9 @@ import numpy as np
 
 from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
-from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
+from tracewire.trace.search.rivals import count_numbers, known_rivals, refit_rivals
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import RefitTask
 from tracewire.trace.thresholds import SearchOptions
@@ -45,7 +45,11 @@ class FinalModels:
 
 
 def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
-    """The best model on long windows, without what is superfluous, effects beside their rivals."""
+    """The best model on long windows, without what is superfluous, effects beside their rivals.
+
+    Where one was superfluous the others meet their rivals again: it may have made up for what the
+    right one of these would have done.
+    """
     sections = search.data_split.whole()
     declared = search.lengthen_windows(
         _refit_on_all_data(search, declared), sections, np.inf
@@ -55,13 +59,16 @@ def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
     best = search.lengthen_windows(_refit_on_all_data(search, best), sections)
     best = _prune(search, best)
     rivals: dict[str, tuple[Rival, ...]] = {}
-    for number in range(len(best.effects)):
-        best, found = _exchange_effect(search, declared, best, number)
-        rivals[str(best.effects[number])] = found
-    for number in range(len(best.effects)):
-        best = _free_shapes(search, best, number)
-    best = _share_phases(search, best)
-    best = _drop_trifles(search, _prune(search, best), declared, rivals)
+    compared = 0
+    while len(best.effects) != compared:
+        compared = len(best.effects)
+        for number in range(compared):
+            best, found = _exchange_effect(search, declared, best, number)
+            rivals[str(best.effects[number])] = found
+        for number in range(compared):
+            best = _free_shapes(search, best, number)
+        best = _share_phases(search, best)
+        best = _drop_trifles(search, _prune(search, best), declared, rivals)
     best, dropped = _drop_terms(search, best)
     return FinalModels(declared, best, rivals, dropped)
 
@@ -114,9 +121,8 @@ def _exchange_effect(
     others = [e for e in best.effects if e is not effect]
     effective_fraction = best.effective_fraction
     results: list[tuple[float, Trial, PlacedEffect]] = []
-    known = _known_rivals(search, effect)
+    known = known_rivals(search, effect)
     kept = {str(e) for e in others}
-    few = _fit_few_short_windows(search, best)
     options = search.options
     most = options.search.rivals if search.has_revisits else options.screen.many
     each = [
@@ -124,12 +130,10 @@ def _exchange_effect(
         for added, _ in known[:most]
         if str(added) not in kept
     ]
-    near = [_prepare_refit(search, best, effects) for effects in _not_far_behind(search, few, each)]
-    for trial in search.refits.run(best, near):
-        if trial is not None:
-            if _count_numbers(trial.effects[number]) < _count_numbers(effect):
-                trial = _free_shapes(search, trial, number)  # it may have as many
-            results.append((trial.bic(effective_fraction), trial, trial.effects[number]))
+    for trial in refit_rivals(search, best, each):
+        if count_numbers(trial.effects[number]) < count_numbers(effect):
+            trial = _free_shapes(search, trial, number)  # it may have as many
+        results.append((trial.bic(effective_fraction), trial, trial.effects[number]))
     results.append((best.bic(effective_fraction), best, effect))
     # where BIC is the same, a law with a physical sign goes before others, and a sensor comes last
     results.sort(
@@ -155,7 +159,7 @@ def _exchange_effect(
             quality, winner, chosen = bic, trial, added
     correlation = {str(added): value for added, value in known} | {str(effect): 1.0}
     if str(chosen) != str(effect):
-        correlation = {str(added): value for added, value in _known_rivals(search, chosen)}
+        correlation = {str(added): value for added, value in known_rivals(search, chosen)}
     found = [
         Rival(
             added,
@@ -180,100 +184,6 @@ def _is_tied(best: Trial, rival: Trial, delta_bic: float, options: SearchOptions
         return False
     one, other = best.windows.residuals, rival.windows.residuals
     return errors_behind(one, other, options.tie_blocks) < options.tie_errors
-
-
-def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:
-    """The best model on few of the shortest windows; None where it stands on less than twice as
-    many samples, or where it is far from the noise on these."""
-    length, options = search.lengths[0], search.options.search
-    segments = search.windows(search.data_split.whole(), length)
-    rows = few_of(segments, options.few)
-    if 2 * len(rows) * length > len(best.windows.segments) * best.length:
-        return None
-    try:
-        few = search.problem.refit(best, [segments[n] for n in rows], length)
-    except FitError:
-        return None
-    return few if few.reduced_chi2 < search.options.trial.gate_noise else None
-
-
-def _not_far_behind(
-    search: Search, few: Trial | None, each: Sequence[list[PlacedEffect]]
-) -> list[list[PlacedEffect]]:
-    """The effects that do not so badly on few short windows that long ones need not be tried."""
-    if few is None:
-        return list(each)
-    target, refits = search.options.search.behind * few.rss, search.refits
-    segments = few.windows.segments
-    tasks = [refits.prepare(few, effects, segments, target=target) for effects in each]
-    trials = refits.run(few, tasks)
-    return [e for e, t in zip(each, trials, strict=True) if t is not None and t.rss <= target]
-
-
-def _known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:
-    """Effects that looked like one when it was screened, or look like it beside it: those first
-    that are as common and have no more numbers, and of these the most likely."""
-    options = search.options.search
-    for step in search.steps:
-        rows = step.screen.observable()  # a sign that is wrong here may be right beside the others
-        rows |= {str(row.candidate): row for row in step.screen.best()}
-        mine = rows.get(str(effect))
-        if mine is None or step.after is None:
-            continue
-        delta_bics = {
-            str(one.trial.effects[-1]): one.delta_bic
-            for one in step.refits
-            if len(one.proposal.rows) == 1
-        }
-        together = len(step.after.effects) > len(step.before.effects) + 1
-        least = options.related_together if together else options.related
-        beside = _likeness_beside(search, effect, step.screen)
-        found = []
-        for name, row in rows.items():
-            if name == str(effect):
-                continue
-            correlation = step.screen.columns.canonical_correlation(mine.columns, row.columns)
-            like = correlation > least or beside.get(name, 0.0) > options.related_beside
-            correlation = max(correlation, beside.get(name, 0.0))
-            if like or name in delta_bics:
-                found.append((row.placed_effect, correlation, delta_bics.get(name, np.inf)))
-        found.sort(key=lambda item: (item[2], *_more_than(effect, item[0], search), -item[1]))
-        return [(added, correlation) for added, correlation, _ in found]
-    return []
-
-
-def _more_than(effect: PlacedEffect, rival: PlacedEffect, search: Search) -> tuple[bool, bool]:
-    """Whether a rival is less common than an effect, and whether it has more numbers."""
-    rare = [one.candidate.effect in search.options.uncommon for one in (rival, effect)]
-    return rare[0] and not rare[1], _count_numbers(rival) > _count_numbers(effect)
-
-
-def _likeness_beside(search: Search, effect: PlacedEffect, first: Screen) -> dict[str, float]:
-    """The correlation of effects with one that was found, beside it, by name: by the part of each
-    that was its own in the screen that found it, and is absorbed where that effect is there.
-
-    Along the runs of a model far from the data two laws may differ that do the same in the motion
-    that was measured.
-    """
-    screens = (step.screen for step in search.steps if str(effect) in map(str, step.before.effects))
-    now = next(screens, None)
-    if now is None:
-        return {}
-    before = first.observable()
-    found: dict[str, float] = {}
-    for row in now.rows:
-        name = str(row.candidate)
-        if name in before:
-            own = 1 - before[name].absorbed_fraction
-            likeness = max(1 - (1 - row.absorbed_fraction) / own, 0.0) ** 0.5
-            found[name] = max(likeness, found.get(name, 0.0))
-    return found
-
-
-def _count_numbers(effect: PlacedEffect) -> int:
-    """The numbers of an effect that are fitted: the coefficient, and shapes that are not off."""
-    shapes = effect.candidate.shapes
-    return 1 + sum(not is_default(effect.candidate, s, effect.values.get(s, 0.0)) for s in shapes)
 
 
 def _free_shapes(search: Search, best: Trial, number: int) -> Trial:

@@ -174,7 +174,8 @@ class Search:
         self, trial: Trial, sections: Sequence[Section] | None = None, far: float | None = None
     ) -> Trial:
         """A trial refitted on longer and longer windows, as far as its residual stays small, with a
-        solver that is precise enough for these."""
+        solver that is precise enough for these. A fit that has not converged may be astray, but not
+        near the noise: there it stands where a body begins to stick."""
         sections = self.data_split.train if sections is None else sections
         far = self.options.search.far if far is None else far
         longest = max(section.count for section in sections)
@@ -190,7 +191,8 @@ class Search:
                 longer = self.refit_precisely(longer)
             except FitError:
                 break
-            if not longer.converged or longer.reduced_chi2 > far:
+            ended = longer.converged or longer.reduced_chi2 < self.options.search.near
+            if not ended or longer.reduced_chi2 > far:
                 break
             trial = longer
         return trial
