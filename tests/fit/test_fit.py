@@ -396,7 +396,8 @@ def test_a_search_that_ends_before_a_minimum_says_so() -> None:
     few = optimset(MaxIter=5, Display="off")
     found = fitted(OSCILLATOR, noisy, method="fminsearch", options=few)
     assert found.unfinished.startswith("the search ended before a minimum: the slope there leads ")
-    assert fitted(OSCILLATOR, noisy).unfinished == ""
+    whole = fitted(OSCILLATOR, noisy)
+    assert (whole.unfinished, whole.remarks) == ("", ())
 
 
 def test_a_search_that_ends_before_a_minimum_has_not_converged(
@@ -439,15 +440,15 @@ def test_outliers_do_not_lead_a_robust_loss_astray() -> None:
 def test_a_search_whose_last_slope_promises_much_says_so_though_errors_are_large() -> None:
     """r = a*p + b where p is 1 off: the residual that is there makes the errors as wide as the
     step."""
-    criterion = SimpleNamespace(scales=np.array([1.0]))
+    criterion: Any = SimpleNamespace(scales=np.array([1.0]))
     slope, vector = np.ones((50, 1)), np.ones(50)
-    told = SimpleNamespace(names=("p",), at_bounds=(), errors={"p": 2.0})
-    remark = unfinished(told, criterion, slope, vector, "fminsearch")  # type: ignore[arg-type]
+    told: Any = SimpleNamespace(names=("p",), at_bounds=(), errors={"p": 2.0})
+    remark = unfinished(told, criterion, slope, vector, "fminsearch")
     assert remark.startswith("the search ended before a minimum: the slope there promises to ")
     assert remark.endswith("go on with --method least_squares")
     settled = np.tile([1.0, -1.0], 25)
-    assert unfinished(told, criterion, slope, settled, "fminsearch") == ""  # type: ignore[arg-type]
-    again = unfinished(told, criterion, slope, vector, "least_squares")  # type: ignore[arg-type]
+    assert unfinished(told, criterion, slope, settled, "fminsearch") == ""
+    again = unfinished(told, criterion, slope, vector, "least_squares")
     assert "least_squares gains nothing more from here: try --method growing_windows" in again
 
 

@@ -293,8 +293,8 @@ class Search:
         """The screen beside a model far from the data, along these; None where it is near them, or
         where none can be."""
         options = self.options
-        at_noise = trial.reduced_chi2 < options.search.far
-        if at_noise or relative_error(trial) < options.screen.far_from_data or not self.free:
+        near_noise = trial.reduced_chi2 < options.search.far
+        if near_noise or relative_error(trial) < options.screen.far_from_data or not self.free:
             return None
         along = assimilate(self.problem, trial, self.linearise(trial))
         if along is None:
