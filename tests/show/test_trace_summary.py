@@ -173,6 +173,14 @@ def test_growth_from_a_bound_is_not_doubted() -> None:
     )
 
 
+def test_a_parameter_that_comes_back_to_its_declared_value_is_not_doubted() -> None:
+    """The fit without the effects had taken it away from there."""
+    back = replace(FOUND.moved[1], before=0.003, after=0.51, declared=0.5)
+    assert "is that possible" not in paragraph_of(replace(FOUND, moved=(back,)))
+    beyond = replace(back, declared=0.2)
+    assert "is that possible" in paragraph_of(replace(FOUND, moved=(beyond,)))
+
+
 def test_a_parameter_that_went_to_zero_is_told() -> None:
     text = paragraph_of(replace(FOUND, dropped=("c",)))
     assert text.endswith(

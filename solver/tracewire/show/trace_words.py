@@ -214,12 +214,16 @@ def stood_in(moved: ParameterChange) -> bool:
 
 def doubt_words(found: Found) -> str:
     """What to ask of declared parameters that grow far with the effects; '' where none does. One
-    that sits on its bound without them has no value there that another one could be held against.
+    that sits on its bound without them has no value there that another one could be held against,
+    and one that comes back to what the diagram declares has not grown.
     """
     grown = [
         f"'{m.name}' is {m.after / m.before:.2g} times as large"
         for m in found.moved
-        if stood_in(m) and m.before and not m.at_bound and abs(m.after) > WORD.grown * abs(m.before)
+        if stood_in(m)
+        and m.before
+        and not m.at_bound
+        and abs(m.after) > WORD.grown * max(abs(m.before), abs(m.declared or 0.0))
     ]
     if not grown or not found.effects:
         return ""

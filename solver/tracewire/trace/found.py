@@ -118,6 +118,7 @@ class ParameterChange:
 
     `written` is the unit in the file where that is not of SI; `factor` brings its numbers to SI.
     `at_bound`: without the effects it sits on a bound, so that its value says nothing there.
+    `declared` is its value in the diagram, where it has one.
     """
 
     name: str
@@ -128,6 +129,7 @@ class ParameterChange:
     written: str = ""
     factor: float = 1.0
     at_bound: bool = False
+    declared: float | None = None
 
     @property
     def users_unit(self) -> str:

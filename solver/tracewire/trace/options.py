@@ -264,8 +264,9 @@ class TraceOptions:
     promise ends worse than without it."""
     moved: float = 0.3
     """The part of its declared value by which a parameter has moved in the fit of the declared
-    model, from which on an effect whose refit is not hopeful begins again at the declared values: a
-    friction or a gain that makes up for the effect may lie in the way."""
+    model, from which on effects are screened at the declared values, too, where none passes at
+    those of the fit, and one whose refit is not hopeful begins again there: a friction or a gain
+    that makes up for the effect may lie in the way."""
     hopeful: float = 2.0
     """The squared error, in units of the least one of a model of the same size, that a fit must
     promise to reach at its pace, or be given up."""

@@ -76,14 +76,15 @@ def _takes_all(pool: ModelPool, size: int) -> bool:
 
 
 def _search_models(pool: ModelPool) -> list[Trial]:
-    """The models that came through the refits on the shortest windows, the best first, and those
-    along the path of the search: there a screen promises what a refit keeps, where whole runs are
-    far from what was measured."""
+    """The models that came through the refits on the shortest windows, the best first, also
+    those from the declared values, and those along the path of the search: there a screen promises
+    what a refit keeps, where whole runs are far from what was measured."""
     steps, best = pool.search.steps, pool.search.best
     first = [step for step in steps if not step.before.effects]
-    trials = [one.trial for step in first[:1] for one in step.refits]
+    most = pool.options.tried_before
+    trials = [one.trial for step in first for one in step.refits[:most]]
     path = [step.before for step in steps if step.before.effects and step.before is not best]
-    found = [*trials[: pool.options.tried_before], *path, *([best] if best else [])]
+    found = [*trials, *path, *([best] if best else [])]
     return [trial for trial in found if 0 < len(trial.effects) <= pool.options.effects]
 
 

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.residual import Segment, is_out_of_step
-from tracewire.solve import parameter_values
 from tracewire.trace.choose.choice import log_scores
 from tracewire.trace.choose.heldout import Finalist, errors_by_block, errors_in_sample
 from tracewire.trace.choose.horizons import Horizon, Horizons
@@ -18,7 +17,7 @@ from tracewire.trace.choose.loosen import loosen_bounds
 from tracewire.trace.choose.promising import select_promising
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
-from tracewire.trace.search.search import Search
+from tracewire.trace.search.search import Search, moved_values
 from tracewire.trace.trials.growing import follow_further
 from tracewire.trace.trials.trial import PlacedEffect, Trial, with_starts_of
 
@@ -116,7 +115,8 @@ class ModelPool:
         left = options.effects - len(parent.names)
         now = self.on_sparse_windows(parent, number)
         first_fits: list[Trial] = []
-        moved = {} if parent.names else self._moved_values(now)
+        declared, most = self.search.problem.declared, options.moved
+        moved = {} if parent.names else moved_values(declared, now.values, most)
         for proposal in proposals:
             names = parent.names.union(proposal.names)
             known = (names, parent.dropped) in self.models or parent.names & {*proposal.names}
@@ -156,13 +156,6 @@ class ModelPool:
             other = self.run_refit(now, effects, fixed, steps, target)
             found += [other] if other else []
         return min(found, key=lambda one: one.rss, default=None)
-
-    def _moved_values(self, now: Trial) -> dict[str, float]:
-        """The declared values of the fitted parameters, where a fit has moved one of them far."""
-        known = parameter_values(self.search.problem.declared, {})
-        own = {name: known[name] for name in now.values if name in known}
-        far = any(abs(now.values[n] - v) > self.options.moved * abs(v) > 0 for n, v in own.items())
-        return own if far else {}
 
     def _select_first_fits(
         self, now: Trial, first_fits: Sequence[Trial], number: int

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
+from tracewire.solve import parameter_values
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
@@ -128,7 +129,7 @@ def parameter_changes(
 ) -> list[ParameterChange]:
     """The declared parameters without and with the effects."""
     errors, flat = best.standard_errors, problem.declared.flat
-    known = flat.parameters
+    known, given = flat.parameters, parameter_values(problem.declared, {})
     held = {one.name for one in at_bounds(declared)}
     return [
         ParameterChange(
@@ -139,6 +140,7 @@ def parameter_changes(
             errors.get(name, 0.0),
             *(known[name].users_unit if name in known else ("", 1.0)),
             at_bound=name in held,
+            declared=given.get(name),
         )
         for name, value in declared.values.items()
     ]

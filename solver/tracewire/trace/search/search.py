@@ -5,8 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from tracewire.compile import Model
 from tracewire.errors import FitError, SimulationError
-from tracewire.residual import Section, Segment
+from tracewire.residual import Section, Segment, evaluate_windows, fit_initial_states
+from tracewire.solve import parameter_values
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import Place
@@ -204,6 +208,8 @@ class Search:
         options = self.options.search
         while len(best.effects) < self.options.effects:
             found = self.add_effect(best)
+            if found is None and not best.effects:
+                found = self.add_effect_at_declared_values(declared)
             if found is None:
                 break
             before = best.reduced_chi2
@@ -228,6 +234,25 @@ class Search:
             words = f"nothing stands out (p = {p_value:.2g})"
             self.steps.append(Step(now, screen, p_value, (), None, words))
             return None
+        return self._add_best_of(now, screen, p_value, proposals)
+
+    def add_effect_at_declared_values(self, declared: Trial) -> Trial | None:
+        """One more effect, or a pair, screened where the values are those that the diagram
+        declares, if the fit has moved one far: a friction that makes up for an effect may go where
+        that effect cannot be seen."""
+        values = moved_values(self.problem.declared, declared.values, self.options.moved)
+        if not values or declared.reduced_chi2 < self.options.at_noise:
+            return None
+        self.tell("screening effects at the declared values")
+        screen = self.screen(_at_values(self.problem, declared, values))
+        found = shortlist(screen, self.options.effects, self.options.screen.singles)
+        proposals = [replace(proposal, values=values) for proposal in found]
+        return self._add_best_of(declared, screen, screen.p_value(), proposals)
+
+    def _add_best_of(
+        self, now: Trial, screen: Screen, p_value: float, proposals: Sequence[Proposal]
+    ) -> Trial | None:
+        """The best of the proposals that passes the gate, refitted beside a model."""
         singles = [p for p in proposals if len(p.rows) == 1]
         pairs = [p for p in proposals if len(p.rows) > 1]
         results = self.refits.refit_best(now, singles, pairs)
@@ -355,6 +380,21 @@ class Search:
                 if not verdict.passed:
                     return verdict, number
         return verdict, None
+
+
+def moved_values(declared: Model, values: Mapping[str, float], most: float) -> dict[str, float]:
+    """The declared values of the fitted parameters, where a fit has moved one of them by more than
+    this part of it; else none."""
+    known = parameter_values(declared, {})
+    own = {name: known[name] for name in values if name in known}
+    far = any(abs(values[name] - value) > most * abs(value) > 0 for name, value in own.items())
+    return own if far else {}
+
+
+def _at_values(problem: TraceProblem, trial: Trial, values: Mapping[str, float]) -> Trial:
+    """A trial with other values of its unknowns, whose windows begin where these fit best."""
+    criterion = problem.free_criterion(trial, trial.windows.segments, {**trial.values, **values})
+    return replace(trial, windows=fit_initial_states(evaluate_windows(criterion, np.inf)))
 
 
 def _is_simpler(other: RefitResult, one: RefitResult) -> bool:
