@@ -15,8 +15,8 @@ voigt_barrier = Block(
         Input("rate", doc="its rate: rad/s, or m/s"),
     ),
     parameters=(
-        Parameter("high", doc="the upper limit: rad, or m"),
-        Parameter("low", doc="the lower limit", default="-high"),
+        Parameter("high", doc="the upper limit: rad, or m", unit_of="of"),
+        Parameter("low", doc="the lower limit", default="-high", unit_of="of"),
         # below 0 it drives the body away: the sign of Eq 19 as it is printed
         Parameter("k", doc="stiffness: N m/rad, or N/m"),
         Parameter("c_l", doc="damping above the upper limit: N m s/rad, or N s/m", low=0.0),
@@ -47,7 +47,7 @@ voigt_barrier = Block(
 
 OF = Input("of", doc="the coordinate of the body: rad, or m")
 STIFFNESS = Parameter("k", doc="N m/rad, or N/m", low=0.0)
-GAP = Parameter("gap", doc="where it begins: rad, or m", low=0.0)
+GAP = Parameter("gap", doc="where it begins: rad, or m", low=0.0, unit_of="of")
 GAPS = Shape((0.3, 0.45, 0.6, 0.75, 0.85), of="Q", least=0.05, most=1.0)
 
 barrier = Block(
@@ -71,7 +71,7 @@ overflow = Block(
     inputs=(Input("of", doc="the level: m, or what is stored"),),
     parameters=(
         Parameter("k", doc="of what runs over to the excess: 1/s, or A/V", low=0.0),
-        Parameter("edge", doc="the level from which on it runs over", low=0.0),
+        Parameter("edge", doc="the level from which on it runs over", low=0.0, unit_of="of"),
     ),
     outputs=(Output("flow", "-k*(of - edge if of >= edge else 0)", doc="leaves what is stored"),),
     effect=Effect(
@@ -107,7 +107,7 @@ hunt_crossley = Block(
     inputs=(OF, Input("rate", doc="its rate: rad/s, or m/s")),
     parameters=(
         Parameter("k", doc="N m/rad^n, or N/m^n, with the exponent n", low=0.0),
-        Parameter("wall", doc="rad, or m; above it where it is positive, else below"),
+        Parameter("wall", doc="rad, or m; above it where it is positive, else below", unit_of="of"),
         Parameter(
             "speed", doc="of the body that doubles the force: rad/s, or m/s; high: no loss", low=0.0
         ),

@@ -72,7 +72,7 @@ drive_saturation = Block(
         Parameter(
             "share", doc="of what is beyond the limit that is lost; 1: all", low=0.0, high=1.0
         ),
-        Parameter("limit", doc="of either sign, in the unit of the drive", low=0.0),
+        Parameter("limit", doc="of either sign", low=0.0, unit_of="of"),
     ),
     outputs=(
         Output(
@@ -97,7 +97,7 @@ drive_dead_zone = Block(
     inputs=(OF,),
     parameters=(
         Parameter("share", doc="of the zone that is lost; 1: all", low=0.0, high=1.0),
-        Parameter("zone", doc="of either sign, in the unit of the drive", low=0.0),
+        Parameter("zone", doc="of either sign", low=0.0, unit_of="of"),
     ),
     outputs=(
         Output(
@@ -122,14 +122,15 @@ drive_quantiser = Block(
     inputs=(OF,),
     parameters=(
         Parameter("share", doc="1: it goes in steps", low=0.0, high=1.0),
-        Parameter("step", doc="from one to the next, in the unit of the drive", low=0.0),
+        Parameter("step", doc="from one to the next", low=0.0, unit_of="of"),
     ),
     outputs=(Output("y", "share*(step*floor(of/step + 0.5) - of)", doc="is added to the drive"),),
     effect=Effect(
         "share",
         {"of": "u"},
         sign=1,
-        shapes={"step": Shape((0.5, 0.25), of="U", least=0.02, most=1.0, wave=True)},
+        # a fit sees how high the steps are, and not where they are
+        shapes={"step": Shape((0.5, 0.25), of="U", least=0.02, most=1.0, wave=True, fixed=True)},
         place="drive",
     ),
 )

@@ -143,7 +143,7 @@ play = Block(
     inputs=(Input("of", doc="the coordinate of the body: rad, or m"), RATE),
     parameters=(
         Parameter("k", doc="N m/rad, or N/m"),
-        Parameter("gap", doc="half of the way that is free: rad, or m", low=0.0),
+        Parameter("gap", doc="half of the way that is free: rad, or m", low=0.0, unit_of="of"),
         Parameter("start", doc="where in the gap the body is at the start", default=0.0),
     ),
     # x is where in the gap the body is, so that the spring is at of - x
@@ -159,7 +159,7 @@ play = Block(
     source="The play operator: M. A. Krasnosel'skii, A. V. Pokrovskii, Systems with Hysteresis.",
 )
 
-GAP = Parameter("gap", doc="half of the way that is free, in the unit of the coordinate", low=0.0)
+GAP = Parameter("gap", doc="half of the way that is free", low=0.0, unit_of="of")
 LAG = Parameter("lag", "s", "with which the end of the gap follows", low=0.0)
 FOLLOWS = State(
     "w", "((of - gap) - w if of - w >= gap else ((of + gap) - w if of - w <= -gap else 0))/lag", "0"

@@ -67,7 +67,7 @@ backlash = Block(
     inputs=(OF,),
     parameters=(
         Parameter("k", doc="that of the spring: N m/rad, or N/m", low=0.0),
-        Parameter("gap", doc="half of the way that is free: rad, or m", low=0.0),
+        Parameter("gap", doc="half of the way that is free: rad, or m", low=0.0, unit_of="of"),
     ),
     outputs=(
         Output(

@@ -100,6 +100,37 @@ def test_no_shipped_diagram_has_a_remark(file: Path) -> None:
     ("line", "said"),
     [
         (
+            "{type: drive_quantiser, of: u, share: 1, step: 0.45}",
+            "'u' is shown in bar, and the step 0.45 of 'a' counts in SI, as 4.5e-06 bar: write "
+            "{value: 0.45, unit: bar}, if that is meant",
+        ),
+        ("{type: drive_saturation, of: u, share: 1, limit: most}", "and the limit 2 of 'a' counts"),
+        ("{type: barrier, of: x, k: 10, gap: 20}", "'x' is shown in mm, and the gap 20 of 'a'"),
+        ("{type: drive_quantiser, of: u, share: 1, step: {value: 0.45, unit: bar}}", ""),
+        ("{type: drive_quantiser, of: u, share: 1, step: 45000}", ""),
+        ("{type: drive_quantiser, of: u, share: 1, step: 0}", ""),
+        ("{type: barrier, of: x, k: 10, gap: 0.02}", ""),
+        ("{type: barrier, of: v, k: 10, gap: 20}", ""),
+    ],
+)
+def test_a_number_in_si_that_is_compared_with_a_signal_in_another_unit_is_told(
+    line: str, said: str
+) -> None:
+    model = made(
+        "inputs: {u: {unit: bar, default: 0}}\nparameters: {most: 2}\nblocks:\n"
+        "  x: {type: integrator, of: v, unit: mm}\n  v: {type: integrator, of: a}\n"
+        f"  a: {line}\n"
+    )
+    found = remarks_of(model, parameter_values(model, {}))
+    assert len(found) == bool(said)
+    assert said in "".join(found)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("{type: constant, value: 5, unit: bar}", "its value 5 counts in SI, as 5e-05 bar"),
+        (
             "{type: constant, value: 30, unit: deg}",
             "'a' is shown in deg, and its value 30 counts in SI, as 1718.87 deg: write "
             "{value: 30, unit: deg}, if that is meant",

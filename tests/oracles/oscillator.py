@@ -23,7 +23,8 @@ from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.data_split import split_data
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 OPTIONS = TraceOptions()
 

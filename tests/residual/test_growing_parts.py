@@ -68,3 +68,11 @@ def test_a_model_that_follows_no_part_gets_no_other_start() -> None:
     criterion = begun.criterion.on_segments([replace(segment, measured=other)])
     wrong = fit_initial_states(evaluate_windows(criterion))
     assert follow_growing_parts(wrong, PART).starts == wrong.starts
+
+
+def test_a_start_that_leaves_far_more_than_the_model_does_elsewhere_is_found() -> None:
+    """It is in step with the signal, and many times the noise away from it."""
+    astray = fit_initial_states(begun_at(2.5))
+    assert follow_growing_parts(astray, part=2.0).starts == astray.starts
+    found = follow_growing_parts(astray, part=2.0, far=30.0)
+    assert found.rss / 2001 == pytest.approx(1, abs=0.1)

@@ -69,6 +69,8 @@ class RemarkLimits:
 
     large: Final[float] = 360.0
     """In degrees, mm and so on: of a number in SI that shows as more another unit may be meant."""
+    small: Final[float] = 1e-2
+    """In bar, kN and so on: of a number in SI that shows as less another unit may be meant."""
     most_values: Final[int] = 300_000
     """Signals times evaluations, a second of work; larger models are not looked at."""
     step: Final[float] = 1e-2

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from tracewire.compile.flat import Flat
 from tracewire.compile.limits import REMARK
 from tracewire.compile.model import Model
-from tracewire.diagram import BlockUse, Value
+from tracewire.diagram import BlockUse, Diagram, InputPort, Shown, Value
 from tracewire.errors import FormulaError
 from tracewire.formula import Name, Number, evaluate
 
@@ -28,33 +28,53 @@ def remarks_of(model: Model, parameters: Values) -> list[str]:
 
     A block of a spring or a damper that is wired so that it pushes the body on; a nonlinear
     function of a dry friction, which has a blend of the values on both sides while that sticks; a
-    number without a unit that is large in the unit, not of SI, in which its signal is shown.
+    number without a unit that is large or tiny in the unit, not of SI, in which its signal is
+    shown.
     """
     return list(_bare(model)) + _of_forces(model, parameters)
 
 
 def _bare(model: Model) -> Iterator[str]:
-    """Numbers that count in SI, and may be meant in the unit in which their signal is shown."""
-    for use in model.diagram.blocks.values():
-        if use.subsystem is not None or use.shown.factor == 1.0:
-            continue
-        for parameter in model.diagram.library[use.type].parameters:
-            value = use.settings.get(parameter.name)
-            if (
-                parameter.name not in OF_THE_SIGNAL
-                or parameter.unit
-                or not isinstance(value, Value)
-            ):
+    """Numbers that count in SI, and may be meant in the unit in which a signal is shown: that of
+    the block, or that which the number is compared with."""
+    diagram = model.diagram
+    for use in diagram.blocks.values():
+        for parameter in diagram.library[use.type].parameters if use.subsystem is None else ():
+            name, number = parameter.name, _bare_number(diagram, use.settings.get(parameter.name))
+            wires = use.inputs.get(parameter.unit_of, ())
+            signal: BlockUse | InputPort | None = None
+            if name in OF_THE_SIGNAL and not parameter.unit and use.shown.factor != 1.0:
+                signal, what = use, f"its {name} {number:g}"
+            elif wires:
+                signal = diagram.blocks.get(wires[0].signal) or diagram.inputs.get(wires[0].signal)
+                what = f"the {name} {number:g} of '{use.name}'"
+            if signal is None or not _may_be_meant_in(signal.shown, number):
                 continue
-            number = value.formula.value if isinstance(value.formula, Number) else 0.0
-            large = abs(number) > REMARK.large * use.shown.factor
-            if large and not value.unit and value.factor == 1.0:
-                unit = use.shown.unit
-                yield (
-                    f"'{use.name}' is shown in {unit}, and its {parameter.name} {number:g} counts "
-                    f"in SI, as {number / use.shown.factor:g} {unit}: write "
-                    f"{{value: {number:g}, unit: {unit}}}, if that is meant"
-                )
+            unit = signal.shown.unit
+            yield (
+                f"'{signal.name}' is shown in {unit}, and {what} counts in SI, as "
+                f"{number / signal.shown.factor:g} {unit}: write {{value: {number:g}, unit: "
+                f"{unit}}}, if that is meant"
+            )
+
+
+def _may_be_meant_in(shown: Shown, number: float) -> bool:
+    """Whether a number in SI is more likely one in the unit in which a signal is shown: it is large
+    there, as degrees in rad are, or tiny, as bars in Pa are."""
+    there = abs(number) / shown.factor
+    if shown.factor < 1.0:
+        return there > REMARK.large
+    return shown.factor > 1.0 and 0.0 < there < REMARK.small
+
+
+def _bare_number(diagram: Diagram, value: object) -> float:
+    """A number that is written without a unit, as it is or as a parameter; zero where it is not
+    known or has a unit."""
+    if isinstance(value, Value) and isinstance(value.formula, Name):
+        value = diagram.parameters.get(value.formula.name)
+    if not isinstance(value, Value) or value.unit or value.factor != 1.0:
+        return 0.0
+    return value.formula.value if isinstance(value.formula, Number) else 0.0
 
 
 def _of_forces(model: Model, parameters: Values) -> list[str]:

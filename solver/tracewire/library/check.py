@@ -29,15 +29,14 @@ def check_block(block: Parts, place: Location) -> list[Problem]:
     for output in block.outputs:
         what = f"output '{output.name}'"
         problems += check_by_mode(block, output.formula, what, everything, place)
-        if output.unit_of and output.unit_of not in {port.name for port in block.inputs}:
-            known = [port.name for port in block.inputs]
-            hint = f"The {what} has its unit."
-            problems.append(unknown("input", output.unit_of, known, place, hint))
+        problems += _check_unit_of(block, output, what, place)
     for state in block.states:
         what = f"the rate of '{state.name}'"
         problems += check_by_mode(block, state.rate, what, everything, place)
         problems += check_formula(state.start, numbers, place)
     problems += _check_parameters(block.parameters, place)
+    for parameter in block.parameters:
+        problems += _check_unit_of(block, parameter, f"parameter '{parameter.name}'", place)
     for port in block.inputs:
         if port.default is not None:
             problems += check_formula(port.default, numbers | time, place)
@@ -54,6 +53,16 @@ def check_block(block: Parts, place: Location) -> list[Problem]:
     if block.effect is not None:
         problems += check_effect(block.effect, _face(block), place)
     return problems
+
+
+def _check_unit_of(
+    block: Parts, part: Output | Parameter, what: str, place: Location
+) -> list[Problem]:
+    """What is wrong with the input of which a part of a block has the unit."""
+    known = [port.name for port in block.inputs]
+    if not part.unit_of or part.unit_of in known:
+        return []
+    return [unknown("input", part.unit_of, known, place, f"The {what} has its unit.")]
 
 
 def _use(parameter: Parameter) -> Use:

@@ -57,7 +57,10 @@ def describe_parts(block: Block) -> list[Description]:
         Description(
             "parameters",
             ("parameter", "unit", "values", "meaning"),
-            tuple((p.name, p.unit, bounds_text(p), p.doc) for p in block.parameters),
+            tuple(
+                (p.name, p.unit, bounds_text(p), joined_doc(p.doc, _unit_words(p)))
+                for p in block.parameters
+            ),
         ),
         Description("conditions", ("condition", ""), tuple((text, "") for text in block.require)),
         Description(
@@ -163,6 +166,12 @@ def _at_once(block: Block, output: Output) -> str:
 def joined_doc(*parts: str) -> str:
     """Short texts about one thing as one, without those that are empty."""
     return "; ".join(part.rstrip(".") for part in parts if part)
+
+
+def _unit_words(parameter: Parameter) -> str:
+    """Which unit the numbers of a parameter have that has none of its own."""
+    of = parameter.unit_of
+    return f"in the unit of '{of}', in SI where a number has none" if of else ""
 
 
 def wiring(port: Input) -> str:

@@ -45,7 +45,7 @@ class Shape:
     period in time: those of the lines in the spectrum of the residual are tried, too. A period with
     `modulates` is that of a wave that multiplies the input of this name: the residual has lines at
     the sums and differences of the frequencies of both, so that these are tried. A `fixed` shape
-    has the first of its values, and no fit changes it.
+    has the first of its values, or that which the scan of a wave finds, and no fit changes it.
     """
 
     at: tuple[float, ...]

@@ -43,6 +43,8 @@ class Parameter:
     Kind `points` is a table of points, which interp(), cubic_spline() or monotone_cubic() reads;
     kind `formula` is a formula over the signals and parameters of the diagram that uses the block.
     A default in text is a formula of the parameters that stand before this one.
+    `unit_of` is an input whose unit the number has where `unit` is none, as a limit has that of
+    what it limits.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Parameter:
     high: float | None = None
     kind: Kind = "number"
     above: float | None = None
+    unit_of: str = ""
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,15 @@ from tracewire.residual.windows import (
 )
 
 
-def is_out_of_step(windows: Windows, part: float) -> bool:
+def is_out_of_step(windows: Windows, part: float, far: float = np.inf) -> bool:
     """Whether the error of windows is more than a part of the standard deviation of the measured
-    signals."""
-    power = sum(_signal_power(windows, n) for n in range(len(windows.linearisations)))
-    return windows.rss > part**2 * power
+    signals, or their mean squared residual is above `far`."""
+    return windows.rss > sum(
+        _most_in_step(windows, n, part, far) for n in range(len(windows.linearisations))
+    )
 
 
-def follow_growing_parts(windows: Windows, part: float) -> Windows:
+def follow_growing_parts(windows: Windows, part: float, far: float = np.inf) -> Windows:
     """Windows with their starts fitted anew where they are out of step, as by `is_out_of_step`.
 
     The start is fitted to the longest first part, of a half, a quarter and so on, that the model
@@ -39,8 +40,8 @@ def follow_growing_parts(windows: Windows, part: float) -> Windows:
         return windows
     found: dict[int, Mapping[str, float]] = {}
     for n in range(len(windows.linearisations)):
-        lost = windows.squares[n] > part**2 * _signal_power(windows, n)
-        start = _follow(windows, n, part) if lost and windows.starts[n] else None
+        lost = windows.squares[n] > _most_in_step(windows, n, part, far)
+        start = _follow(windows, n, part, far) if lost and windows.starts[n] else None
         if start is not None:
             found[n] = start
     there = refine_initial_states(
@@ -49,7 +50,7 @@ def follow_growing_parts(windows: Windows, part: float) -> Windows:
     return keep_better(windows, there, list(found))
 
 
-def _follow(windows: Windows, n: int, part: float) -> Mapping[str, float] | None:
+def _follow(windows: Windows, n: int, part: float, far: float) -> Mapping[str, float] | None:
     """The start of a window after it was fitted to its growing parts but the whole; nothing where
     the model follows no part."""
     segment, whole = windows.criterion.segments[n], windows.criterion
@@ -60,11 +61,16 @@ def _follow(windows: Windows, n: int, part: float) -> Mapping[str, float] | None
         there = fit_initial_states(
             evaluate_windows(whole.on_segments([first]), windows.inlier_limit)
         )
-        growing = growing or not is_out_of_step(there, part)
+        growing = growing or not is_out_of_step(there, part, far)
         if growing:
             start = there.starts[0]
         rows = 2 * rows if growing else rows // 2
     return start
+
+
+def _most_in_step(windows: Windows, n: int, part: float, far: float) -> float:
+    """The sum of squared residuals up to which a window is in step."""
+    return min(part**2 * _signal_power(windows, n), far * max(windows.residuals[n].size, 1))
 
 
 def _signal_power(windows: Windows, n: int) -> float:

@@ -105,6 +105,16 @@ class TrialOptions:
     """Of the range between two bounds, or of the size of a number: how near to one is on it."""
     phase_steps: int = 8
     """Steps of the fit of a phase to a series that no fit has seen."""
+    rescans: int = 2
+    """How often a length that no fit changes is scanned again beside a model, which is then
+    refitted."""
+    rescan_spread: float = 0.04
+    """How far it may be from the length of the scan before, as a part of it: the half of what lies
+    between two lengths of that scan where there are six steps."""
+    rescan_lengths: int = 17
+    """Lengths of a grid over that spread."""
+    rescan_grids: int = 2
+    """Grids: each lies between two lengths of the one before."""
 
     gate_drop: float = 0.02
     """The part by which the squared error falls on the gate, at least, of a model at the noise.

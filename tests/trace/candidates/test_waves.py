@@ -13,6 +13,7 @@ from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.candidates import find_candidates
 from tracewire.trace.candidates.places import find_places
 from tracewire.trace.candidates.signal_scales import signal_scales_of
+from tracewire.trace.candidates.waves import part_up_to
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import ScreenRow, screen_candidates
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
@@ -100,3 +101,13 @@ def test_in_a_long_record_a_part_of_the_windows_tells_the_length() -> None:
     few = TraceOptions(candidate=CandidateOptions(scanned=len(T) // 10))
     row = best_row(turned(12, 2.0), "cogging", options=few)
     assert row.shapes["pitch"] == pytest.approx(2 * np.pi / 12, rel=1e-9)
+
+
+def test_a_coefficient_at_its_bound_takes_less_of_the_squared_error() -> None:
+    """Of r + c x with the best c at 4, where 1 is the most: |r|^2 - |r + x|^2 over that of 4."""
+    x = np.array([1.0, -2.0, 3.0])
+    r = -4 * x + np.array([2.0, 1.0, 0.0])  # the rest is at right angles to x
+    part = (r @ r - (r + x) @ (r + x)) / (r @ r - (r + 4 * x) @ (r + 4 * x))
+    assert part_up_to(1.0, np.array([4.0, -4.0])) == pytest.approx([part, part])
+    assert part_up_to(1.0, np.array([0.0, 0.7, -1.0])) == pytest.approx([1.0, 1.0, 1.0])
+    assert part_up_to(np.inf, np.array([0.0, 1e9])) == pytest.approx([1.0, 1.0])

@@ -11,7 +11,8 @@ from tracewire.residual.windows import Section
 from tracewire.trace.choose.heldout import Finalist, errors_held_out, errors_in_sample
 from tracewire.trace.choose.horizons import Horizons, horizons_of
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
 

@@ -14,7 +14,8 @@ from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.horizons import horizons_of
 from tracewire.trace.choose.loosen import _loosened, loosen_bounds
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
 NOISE = 1e-4

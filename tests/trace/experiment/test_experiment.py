@@ -21,7 +21,8 @@ from tracewire.trace.experiment.rig import main_frequency
 from tracewire.trace.found import Experiment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import ExperimentOptions
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem
 
 OPTIONS = TraceOptions()
 

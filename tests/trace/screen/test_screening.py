@@ -12,7 +12,7 @@ from tracewire.trace.candidates.places import find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen, screen_candidates
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-from tracewire.trace.trials.trial import PlacedEffect
+from tracewire.trace.trials.placed_effect import PlacedEffect
 
 OPTIONS = TraceOptions()
 

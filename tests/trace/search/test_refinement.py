@@ -24,7 +24,8 @@ from tracewire.trace.search.refinement import (
 )
 from tracewire.trace.search.refits import RefitResult
 from tracewire.trace.search.search import Search, Step
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 OPTIONS = TraceOptions()
 

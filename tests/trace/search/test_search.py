@@ -18,8 +18,9 @@ from tracewire.trace.screen.screening import Screen, ScreenRow
 from tracewire.trace.screen.shortlist import shortlist
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.data_split import shortest_window, split_data
+from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import CandidateColumns
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import Trial
 
 OPTIONS = TraceOptions()
 

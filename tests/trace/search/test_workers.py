@@ -22,7 +22,8 @@ from tracewire.errors import DataError
 from tracewire.trace import Found, trace
 from tracewire.trace.found import data_of
 from tracewire.trace.search.workers import Workers
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from oracles.oscillator import DIAGRAM, candidates_of, problem_of, record, trial
 from tracewire.fit import describe_undetermined
 from tracewire.residual.sensor import Sensor
 from tracewire.trace.trials.bounds import AtBound, at_bounds, describe_bounds
-from tracewire.trace.trials.trial import PlacedEffect
+from tracewire.trace.trials.placed_effect import PlacedEffect
 
 
 def test_a_fit_inside_its_bounds_has_nothing_on_one() -> None:

@@ -22,7 +22,8 @@ from scipy.integrate import solve_ivp
 from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
-from tracewire.trace.trials.trial import PlacedEffect, with_fitted_starts
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import with_fitted_starts
 
 COULOMB = "coulomb @ force"
 

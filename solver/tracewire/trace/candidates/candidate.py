@@ -76,6 +76,16 @@ class Candidate:
         return self.coefficient.removeprefix(f"{self.block}.")
 
     @property
+    def scanned(self) -> tuple[str, ...]:
+        """Shapes that a scan finds and no fit changes."""
+        return tuple(name for name in self.waves if name in self.fixed)
+
+    @property
+    def most(self) -> float:
+        """How far the coefficient may be from where the effect vanishes."""
+        return self.limits.get(self.parameter, (0.0, math.inf))[1] - self.neutral
+
+    @property
     def imitated(self) -> frozenset[str]:
         """The effects at its place that it imitates, as `name @ place`."""
         return frozenset(f"{alias} @ {self.place.name}" for alias in self.alias)

@@ -42,7 +42,8 @@ def _changes(
         if own:  # the value where a series says nothing
             settings[name] = Value(Number(own[0]), named=True)
         elif name in candidate.fixed:
-            settings[name] = Value(Number(float(f"{value / factor.get(name, 1.0):.6g}")))
+            number = Number(float(f"{value / factor.get(name, 1.0):.6g}"))
+            settings[name] = Value(number, named=name in candidate.scanned)
         elif not is_default(candidate, name, value):
             settings[name] = _fitted(value, candidate.limits[name], factor.get(name, 1.0))
     first: Mapping[str, float] = next(iter(candidate.own.values()), {})

@@ -100,7 +100,7 @@ def _peaks(
             ]
             columns = answer(candidate.place.name, torques)
             groups = columns.reshape(len(columns), len(some), -1)
-            parts.append(_rss_reductions(groups, residual))
+            parts.append(_rss_reductions(groups, residual, candidate.most))
         return np.concatenate(parts)
 
     scores = score(lengths)
@@ -168,9 +168,19 @@ def _outputs(
     return found
 
 
-def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:
+def part_up_to(most: float, coefficients: Vector) -> Vector:
+    """The part of its fall of a sum of squares that a column keeps whose coefficient goes no
+    farther than this: 1 - (1 - most/|c|)^2, where |c| is larger."""
+    sizes = np.maximum(np.abs(coefficients), most)
+    return np.asarray(
+        1 - (1 - np.divide(most, sizes, np.ones_like(sizes), where=sizes > most)) ** 2
+    )
+
+
+def _rss_reductions(columns: Matrix, residual: Vector, most: float = math.inf) -> Vector:
     """By how much each group of columns (M, groups, k) together lowers the sum of squares of a
-    residual, (groups,): by their products, as k is 1 or 2."""
+    residual, (groups,): by their products, as k is 1 or 2. The coefficient of a column that stands
+    alone goes no farther than `most`."""
     count = range(columns.shape[2])
     products = np.array(
         [[np.einsum("mg,mg->g", columns[..., i], columns[..., j]) for i in count] for j in count]
@@ -181,4 +191,6 @@ def _rss_reductions(columns: Matrix, residual: Vector) -> Vector:
     squared, directions = np.linalg.eigh(products / (sizes[:, :, None] * sizes[:, None, :]))
     parts = np.einsum("gkj,gk->gj", directions, along) ** 2
     shown = squared > 1e-12 * squared[:, -1:]
-    return np.asarray(np.sum(np.divide(parts, squared, np.zeros_like(parts), where=shown), axis=1))
+    found = np.sum(np.divide(parts, squared, np.zeros_like(parts), where=shown), axis=1)
+    alone = columns.shape[2] == 1
+    return np.asarray(found * part_up_to(most, along[:, 0] / sizes[:, 0]) if alone else found)

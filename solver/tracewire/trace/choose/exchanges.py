@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from tracewire.errors import FitError
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.model_pool import ModelPool
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 
 def exchange_single_effects(pool: ModelPool) -> None:

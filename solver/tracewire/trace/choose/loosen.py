@@ -12,7 +12,8 @@ from tracewire.errors import FitError
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem
 
 
 def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions) -> Finalist | None:

@@ -19,7 +19,9 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal, Screen
 from tracewire.trace.search.search import Search, moved_values
 from tracewire.trace.trials.growing import follow_further
-from tracewire.trace.trials.trial import PlacedEffect, Trial, with_starts_of
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.scanned_lengths import rescan_lengths
+from tracewire.trace.trials.trial import Trial, with_starts_of
 
 Array = NDArray[np.float64]
 Key = tuple[frozenset[str], tuple[str, ...]]
@@ -223,7 +225,12 @@ class ModelPool:
         problem = self.search.problem
         model = loosen_bounds(problem, model, self.options) or model
         trials = tuple(
-            trial if trial.converged else problem.refit(trial, trial.windows.segments, trial.length)
+            rescan_lengths(
+                problem,
+                trial
+                if trial.converged
+                else problem.refit(trial, trial.windows.segments, trial.length),
+            )
             for trial in model.trials
         )
         model = replace(model, trials=trials)

@@ -24,9 +24,10 @@ from tracewire.trace.choose.unseen import (
 from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.precision import is_loose
 from tracewire.trace.trials.statistics import inverse_information
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import Trial
 
 
 def fit_declared(search: Search) -> Trial:

@@ -43,7 +43,8 @@ from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refinement import FinalModels, Rival, largest_first
 from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.bounds import describe_bounds
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 Matrix = NDArray[np.float64]
 
@@ -176,8 +177,9 @@ def _tie_of(rival: Rival) -> Tie:
 
 
 def _fitted_parameters(effect: PlacedEffect, trial: Trial) -> dict[str, float]:
-    """The parameters of an effect that were fitted."""
-    fitted = {**trial.windows.criterion.parameters, **trial.values}
+    """The parameters of an effect that were fitted, or found by a scan."""
+    fitted = {effect.unknown(name): effect.values[name] for name in effect.candidate.scanned}
+    fitted |= {**trial.windows.criterion.parameters, **trial.values}
     return {
         name: fitted[effect.unknown(name)]
         for name in effect.values

@@ -15,17 +15,18 @@ from tracewire.trace.candidates.candidate import PHASE, Candidate, is_default
 from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
 from tracewire.trace.candidates.lines import with_lines
 from tracewire.trace.candidates.signal_scales import Trajectory
-from tracewire.trace.candidates.waves import as_measured, scan_waves
+from tracewire.trace.candidates.waves import as_measured, part_up_to, scan_waves
 from tracewire.trace.limits import BATCH, ROUNDING
 from tracewire.trace.screen.projection import project_out, project_out_starts
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.thresholds import ScreenOptions
+from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import (
     BoundedColumns,
     CandidateColumns,
     orthonormal,
 )
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import Trial
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -410,6 +411,8 @@ def _row(
     indices = tuple(number for number, _ in group)
     candidate = group[0][1].candidate
     rss_reduction, values = columns.score(indices)
+    if len(values) == 1:
+        rss_reduction *= float(part_up_to(candidate.most, values)[0])
     shapes = dict(group[0][1].shapes)
     series = names if candidate.each and len(names) > 1 else ()
     row = ScreenRow(
@@ -460,7 +463,11 @@ def _count(candidate: Candidate, shapes: Mapping[str, float], series: Sequence[s
     """How many numbers an effect takes: a shape that keeps its default is none. The screen takes an
     amplitude and a phase in each series that has a phase of its own."""
     more = 2 * (len(series) - 1) if series else 0
-    free = {name: value for name, value in shapes.items() if name not in candidate.fixed}
+    free = {
+        name: value
+        for name, value in shapes.items()
+        if name not in candidate.fixed or name in candidate.scanned
+    }
     return 1 + more + sum(not is_default(candidate, name, value) for name, value in free.items())
 
 

@@ -16,8 +16,9 @@ from tracewire.trace.search.rivals import count_numbers, known_rivals, refit_riv
 from tracewire.trace.search.search import Search
 from tracewire.trace.search.workers import RefitTask
 from tracewire.trace.thresholds import SearchOptions
+from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import errors_behind
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.trial import Trial
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,8 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.search.workers import RefitTask, Workers
 from tracewire.trace.thresholds import SearchOptions
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial, with_starts_of
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem, Trial, with_starts_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,8 @@ from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 
 def known_rivals(search: Search, effect: PlacedEffect) -> list[tuple[PlacedEffect, float]]:

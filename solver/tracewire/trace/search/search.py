@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,6 +30,7 @@ from tracewire.trace.trials.data_split import DataSplit
 from tracewire.trace.trials.judge import GateResult, judge_on_gate
 from tracewire.trace.trials.precision import is_loose, tighter
 from tracewire.trace.trials.relative_error import relative_error
+from tracewire.trace.trials.scanned_lengths import rescan_lengths
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 
@@ -149,13 +151,12 @@ class Search:
         return whole if whole.reduced_chi2 < self.options.search.far else trial
 
     def finish(self, trial: Trial) -> Trial:
-        """A trial whose fit has converged, where it does so in another run of steps."""
-        if trial.converged:
-            return trial
-        try:
-            return self.problem.refit(trial, trial.windows.segments, trial.length)
-        except FitError:
-            return trial
+        """A trial whose fit has converged, where it does so in another run of steps, with lengths
+        that were scanned beside it."""
+        if not trial.converged:
+            with suppress(FitError):
+                trial = self.problem.refit(trial, trial.windows.segments, trial.length)
+        return rescan_lengths(self.problem, trial)
 
     def tighten(self) -> None:
         """Let the solver have a tenth of its tolerance from now on."""

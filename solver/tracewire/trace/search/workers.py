@@ -12,7 +12,8 @@ from tracewire.blas import one_blas_thread
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import Segment
 from tracewire.solve import StopFlag, WorkerEnded, carry_out
-from tracewire.trace.trials.trial import PlacedEffect, TraceProblem, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import TraceProblem, Trial
 
 REFUSED = (FitError, DiagramError, OptionError)
 """How a refit may end without a trial: it does not run, or the effects cannot be wired."""

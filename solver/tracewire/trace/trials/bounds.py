@@ -8,7 +8,8 @@ from typing import Literal
 
 from tracewire.residual import OWN, Unknown, is_of_sensor
 from tracewire.trace.candidates.candidate import PHASE
-from tracewire.trace.trials.trial import PlacedEffect, Trial
+from tracewire.trace.trials.placed_effect import PlacedEffect
+from tracewire.trace.trials.trial import Trial
 
 Kind = Literal["parameter", "sensor", "coefficient", "shape"]
 

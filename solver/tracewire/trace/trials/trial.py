@@ -34,59 +34,16 @@ from tracewire.residual import (
     with_memory,
 )
 from tracewire.solve import Limits, parameter_values, release
-from tracewire.trace.candidates.candidate import Candidate, unknowns_of, without_defaults
+from tracewire.trace.candidates.candidate import unknowns_of
 from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.candidates.drive_sines import Sine, drive_sines_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
 from tracewire.trace.trials.phase_fit import fit_phase
+from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import bic, effective_fraction, inverse_information
 
 Vector = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class PlacedEffect:
-    """An effect in a diagram: the candidate, and the values of its parameters by their names in
-    its block; a shape that is not among them keeps its default."""
-
-    candidate: Candidate
-    values: Mapping[str, float]
-
-    def __str__(self) -> str:
-        return str(self.candidate)
-
-    def unknown(self, parameter: str) -> str:
-        """The name of a parameter among the unknowns of a fit."""
-        candidate = self.candidate
-        own = parameter == candidate.parameter
-        return candidate.coefficient if own else f"{candidate.block}.{parameter}"
-
-    @property
-    def own_series(self) -> set[str]:
-        """The series in which a shape has a value of its own."""
-        return {key.partition("@")[2] for key in self.values if "@" in key}
-
-    def series_values(self, series: str) -> dict[str, float]:
-        """The values of its own that a series has, by path."""
-        ends = f"@{series}"
-        own = dict(self.candidate.own.get(series, {}))
-        own |= {key.removesuffix(ends): v for key, v in self.values.items() if key.endswith(ends)}
-        return {f"{self.candidate.block}.{name}": value for name, value in own.items()}
-
-    def with_value(self, name: str, value: float) -> PlacedEffect:
-        """The effect with one more value."""
-        return replace(self, values={**self.values, name: value})
-
-    @property
-    def coefficient(self) -> float:
-        """The value of the coefficient."""
-        return self.values[self.candidate.parameter]
-
-    def with_values(self, named: Mapping[str, float]) -> PlacedEffect:
-        """The effect with the values that the unknowns of a fit have."""
-        values = {n: named.get(self.unknown(n), value) for n, value in self.values.items()}
-        return replace(self, values=without_defaults(self.candidate, values))
 
 
 @dataclass(frozen=True, eq=False)
@@ -330,9 +287,11 @@ class TraceProblem:
     def windows_on(
         self, trial: Trial, segments: Sequence[Segment], inlier_limit: float = 2.0
     ) -> Windows:
-        """A trial on other windows, where only starts are fitted; `inlier_limit` as in Windows."""
+        """A trial on other windows, where only starts are fitted; `inlier_limit` as in Windows.
+        One that leaves many times what the trial leaves where it was fitted begins anew."""
         windows = evaluate_windows(self.criterion_on(trial, segments), inlier_limit)
-        return follow_growing_parts(fit_initial_states(windows), self.options.out_of_step)
+        far = self.options.trial.gate_astray * max(trial.reduced_chi2, 1.0)
+        return follow_growing_parts(fit_initial_states(windows), self.options.out_of_step, far)
 
     def criterion_on(self, trial: Trial, segments: Sequence[Segment]) -> Criterion:
         """The criterion of a trial on other windows, with its values fixed."""
@@ -342,9 +301,11 @@ class TraceProblem:
     def free_criterion(
         self, trial: Trial, segments: Sequence[Segment], values: Mapping[str, float]
     ) -> Criterion:
-        """The criterion of a trial on other windows, with its unknowns free from `values`."""
+        """The criterion of a trial on other windows, with its unknowns free from `values`, and what
+        else is there fixed."""
         unknowns = [replace(u, value=values[u.name]) for u in trial.windows.criterion.unknowns]
-        fixed = trial.windows.criterion.parameters
+        others = {name: v for name, v in values.items() if name not in trial.windows.values}
+        fixed = {**trial.windows.criterion.parameters, **others}
         return self._criterion(trial.model, segments, unknowns, fixed, trial.effects)
 
     def fixed_criterion(
