@@ -67,6 +67,11 @@ def test_version(call: Any) -> None:
             ["chek"],
             "No such command 'chek'. Did you mean 'check', 'schema'? See 'tracewire --help'.",
         ),
+        (
+            ["effects"],
+            "No such command 'effects'. It is 'blocks' here. See 'tracewire --help'.",
+        ),
+        (["simulate", "a.yaml"], "No such command 'simulate'. It is 'run' here."),
         (["run"], "Missing argument 'DIAGRAM'. See 'tracewire run --help'."),
         (["run", "a.yaml", "--rtol", "small"], "'--rtol'"),
         (["run", "a.yaml", "--span", "1"], "'--span' requires 2 arguments"),

@@ -100,6 +100,14 @@ def test_limits_and_starts_reach_the_search(call: Any, decay: Path) -> None:
     assert few["evaluations"] < 30
 
 
+def test_the_tolerance_of_runs_reaches_the_search(call: Any, decay: Path) -> None:
+    found = [
+        call("fit", decay, *QUICK, "--rtol", rtol, "--json").data["values"]["rate"]
+        for rtol in ("1e-3", "1e-9")
+    ]
+    assert abs(found[0] - 1.7) > 1e-7 > abs(found[1] - 1.7)
+
+
 def test_free_names_the_parameters(call: Any, decay: Path) -> None:
     data = call("fit", decay, *QUICK, "--free", "x0", "--set", "rate=1.7", "--json").data
     assert data["values"] == pytest.approx({"x0": 0.15}, rel=1e-4)
@@ -233,6 +241,7 @@ def test_a_diagram_without_measured_series_is_told(call: Any, decay: Path) -> No
         (["--free", "rat"], "unknown parameter 'rat'; there are: rate, x0. Did you mean 'rate'?"),
         (["--set", "rate=20"], "'rate' begins at 20, outside its bounds 0 to 10 (SI)."),
         (["--MaxIter", "0"], "MaxIter is 0. Give a number of at least 1"),
+        (["--rtol", "0"], "rtol = 0 and atol = 0 cannot be met. Take rtol between"),
         (["--TolX", "-1"], "TolX is -1.0. Give a tolerance of at least 0."),
         (["--fix", "rat"], "unknown parameter 'rat'; there are: rate, x0. Did you mean 'rate'?"),
         (["--loss", "hubert"], "unknown loss 'hubert'; there are: cauchy, huber, linear."),

@@ -35,6 +35,26 @@ VERBS = (
 """In the order of the help. Each is a function, or a `typer.Typer` of several, in the file of its
 name; a verb imports what is slow to import inside its function."""
 
+OTHER_NAMES = {
+    "simulate": "run",
+    "sim": "run",
+    "effects": "blocks",
+    "library": "blocks",
+    "laws": "blocks",
+    "plot": "run",
+    "gui": "view",
+    "edit": "view",
+    "lint": "check",
+    "validate": "check",
+    "optimise": "fit",
+    "optimize": "fit",
+    "estimate": "fit",
+    "calibrate": "fit",
+    "identify": "trace",
+    "diagnose": "trace",
+}
+"""What other tools call these verbs."""
+
 
 def tracewire_(
     version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
@@ -142,6 +162,8 @@ def _usage(error: Exception, given: Sequence[str]) -> Problem:
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     what, _, meant = message.strip().partition(" Did you mean ")
     hint = f"Did you mean {meant} " if meant else ""
+    if path == "tracewire" and given[0] in OTHER_NAMES:
+        hint = f"It is '{OTHER_NAMES[given[0]]}' here. "
     if extra := EXTRA.search(what):
         names = extra[1].split()
         what = f"unexpected {'argument' if len(names) == 1 else 'arguments'}: {' '.join(names)}"

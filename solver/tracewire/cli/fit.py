@@ -92,6 +92,7 @@ class Course:
     """How a search begins, where it is stored, and what is told of it."""
 
     seed: Annotated[int, typer.Option(help="What the random methods begin from.")] = 0
+    rtol: Annotated[float, typer.Option(help="The relative tolerance of runs.")] = 1e-6
     save: Annotated[
         str | None, typer.Option(metavar="FILE", help="Store the search here while it runs.")
     ] = None
@@ -163,6 +164,7 @@ def fit(
             options=options,
             loss=search.loss,
             seed=course.seed,
+            rtol=course.rtol,
             save=course.save,
             resume=course.resume,
             progress=_told(tell),

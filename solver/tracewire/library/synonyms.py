@@ -357,6 +357,11 @@ INSTEAD: dict[str, str] = {
     ),
     "preisach": "Write include: tracewire:hysteresis.yaml, which has it as a subsystem.",
     "terminator, ground, TRASH_f": "A signal that nothing reads needs no block.",
+    "sensor_lag, slow sensor": (
+        "A sensor that answers late is a number of a measured signal, signals: {x: {column: x, "
+        "delay: ...}}; one that follows slowly is a 'low_pass' of the signal, which is measured "
+        "in its place."
+    ),
     **{f"sensor_{name}": SENSOR.format(name) for name in SENSOR_TERMS},
 }
 """What to do instead of what is no block here: its names, divided by commas, and a sentence."""
