@@ -202,8 +202,8 @@ def _confirm(search: Search, judgement: Judgement) -> Judgement:
         part = f"{100 * max(share, 0):.0f} %"
         what = f"takes {part} of the excess squared error of whole unseen runs away"
     elif is_no_better_on_claim(search, declared, best):
-        what = "lowers the error neither of windows nor of free runs in the part of the data that"
-        what += " played no part"
+        what = f"takes less than {search.options.claimed:.0%} of the excess squared error of"
+        what += " windows and of free runs away in the part of the data that played no part"
     if not (what and _moves_alike(search, declared, best)):
         what = describe_own_rhythm(search, best)
     if not what:

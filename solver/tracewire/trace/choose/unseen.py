@@ -90,16 +90,21 @@ def lowers_unseen(search: Search, fewer: Trial, more: Trial, length: int) -> boo
 
 
 def is_no_better_on_claim(search: Search, fewer: Trial, more: Trial) -> bool:
-    """Whether a model has no less error than one with fewer effects in the part of the data that is
-    kept for the claim, neither in windows nor in free runs; false where the latter are at the
-    noise. Where they have lost track of the data, windows must show a rise that is no chance."""
-    claim, short = search.data_split.validate, search.short_length
+    """Whether a model takes next to nothing of the excess error that one with fewer effects has in
+    the part of the data that is kept for the claim, neither of windows nor of free runs; false
+    where the latter are at the noise. Where they have lost track of the data, windows must show a
+    rise that is no chance."""
+    claim, short, options = search.data_split.validate, search.short_length, search.options
+    count = _count(claim)
     before, after = (_squares_of_free_runs(search, claim, trial) for trial in (fewer, more))
-    if before <= search.options.informative * _count(claim) or after < before:
+    at_noise = before <= options.informative * count
+    if at_noise or before - after >= options.claimed * (before - count):
         return False
-    rise = 0.0 if before < _tracked(search, claim) else search.options.harm
+    lost = before >= _tracked(search, claim)
     before, after = (float(squares_on(search, claim, t, short).sum()) for t in (fewer, more))
-    return after >= (1 + rise) ** 2 * before
+    if lost:
+        return after >= (1 + options.harm) ** 2 * before
+    return before - after <= options.claimed * max(before - count, 0.0)
 
 
 def _squares_of_free_runs(search: Search, sections: Sequence[Section], trial: Trial) -> float:
