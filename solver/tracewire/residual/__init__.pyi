@@ -1,7 +1,7 @@
 from .criterion import LIMITS, Criterion, half_square
 from .files import series_from_files
 from .growing_parts import follow_growing_parts, is_out_of_step
-from .initial_states import fit_initial_states
+from .initial_states import fit_initial_states, restart_from_others
 from .input_noise import InputCovariance, likely_input_noise, response_in_windows, run_noise
 from .input_response import InputNoise
 from .inputs import looks_held
@@ -97,6 +97,7 @@ __all__ = [
     "project_out_initial_states",
     "refuse_readers_of_free",
     "response_in_windows",
+    "restart_from_others",
     "run_noise",
     "sensor_unknowns",
     "series_from_files",

@@ -28,6 +28,21 @@ def fit_initial_states(windows: Windows, steps: int = WINDOW.initial_state_steps
     return restart_from_data(update_memories(restart_from_ends(windows, off, steps)), steps)
 
 
+def restart_from_others(windows: Windows, others: Windows) -> Windows:
+    """Windows that another model has, too, each from the start that it has there where that leaves
+    less, and where it does better: what a start led astray says nothing of the model."""
+    off = [
+        n
+        for n in np.flatnonzero(windows.squares > others.squares).tolist()
+        if windows.starts[n] and not _is_good(windows, n)
+    ]
+    starts = {
+        n: {name: others.starts[n].get(name, value) for name, value in windows.starts[n].items()}
+        for n in off
+    }
+    return _restart(windows, starts, WINDOW.initial_state_steps) if off else windows
+
+
 def restart_from_data(windows: Windows, steps: int) -> Windows:
     """Windows that are much worse than most from the starts that the data tell, where that does
     better: a body that friction holds at its start does not feel where it should begin. The same

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,13 +17,20 @@ def judged(
     before: list[float], after: list[float], s2: float = 1.0, fall: float = 20.0
 ) -> GateResult:
     """The gate on windows with these squared errors."""
-    now, trial = SimpleNamespace(reduced_chi2=9.0), SimpleNamespace(reduced_chi2=s2)
+    now: Any = SimpleNamespace(reduced_chi2=9.0)
+    trial: Any = SimpleNamespace(reduced_chi2=s2)
     squares = {id(now): before, id(trial): after}
-    problem = SimpleNamespace(
-        residuals_on=lambda one, windows: [np.sqrt([[x]]) for x in squares[id(one)]],
-        options=TraceOptions(),
-    )
-    return judge_on_gate(problem, now, trial, [], fall)  # type: ignore[arg-type]
+
+    def windows_on(one: Any, windows: Any) -> Any:
+        """Windows of one residual each, whose starts are not free."""
+        residuals = [np.sqrt([[x]]) for x in squares[id(one)]]
+        starts = [{}] * len(residuals)
+        return SimpleNamespace(
+            squares=np.array(squares[id(one)]), residuals=residuals, starts=starts
+        )
+
+    problem: Any = SimpleNamespace(windows_on=windows_on, options=TraceOptions())
+    return judge_on_gate(problem, now, trial, [], fall)
 
 
 def test_what_halves_the_error_everywhere_passes() -> None:
@@ -49,7 +57,7 @@ def test_less_than_two_percent_is_nothing() -> None:
 
 
 def test_far_above_the_noise_a_third_is_asked_for() -> None:
-    assert not judged([10.0] * WINDOWS, [7.0] * WINDOWS, s2=5.0).passed
+    assert not judged([10.0] * WINDOWS, [7.1] * WINDOWS, s2=5.0).passed
     assert judged([10.0] * WINDOWS, [6.0] * WINDOWS, s2=5.0).passed
 
 

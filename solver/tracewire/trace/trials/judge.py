@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Segment
+from tracewire.residual import Segment, restart_from_others
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
 Vector = NDArray[np.float64]
@@ -43,10 +43,10 @@ def judge_on_gate(
     """
     options = problem.options.trial
     at_noise = trial.reduced_chi2 <= options.gate_noise
-    old, new = problem.residuals_on(now, windows), problem.residuals_on(trial, windows)
-    before = np.array([float(np.sum(r**2)) for r in old])
-    after = np.array([float(np.sum(r**2)) for r in new])
-    noise = np.array([float(r.size) for r in new])
+    old, new = problem.windows_on(now, windows), problem.windows_on(trial, windows)
+    before = restart_from_others(old, new).squares
+    after = restart_from_others(new, old).squares
+    noise = np.array([float(r.size) for r in new.residuals])
     astray = np.minimum(before, after) > options.gate_astray * noise
     if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
         before, after, noise = before[~astray], after[~astray], noise[~astray]
