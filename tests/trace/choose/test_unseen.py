@@ -18,6 +18,7 @@ from tracewire.trace.choose.unseen import (
     is_no_better_on_claim,
     lowers_unseen,
     prune_by_other_runs,
+    raises_unseen,
     raises_whole_runs,
     share_of_whole_runs,
     simplify_by_unseen,
@@ -63,10 +64,19 @@ def prediction(
     return Prediction(horizons, models, errors, choice, screen, entrants, options)
 
 
+class Problem(SimpleNamespace):
+    """What models leave in windows, whose starts are not free, is given as `residuals_on`."""
+
+    def windows_on(self, names: Any, windows: Any) -> Any:
+        residuals = self.residuals_on(names, windows)
+        squares = np.array([float(np.sum(r**2)) for r in residuals])
+        return SimpleNamespace(squares=squares, residuals=residuals, starts=[{}] * len(residuals))
+
+
 def search(left: dict[tuple[str, ...], float], other_runs: tuple[str, ...] = ("cold",)) -> Any:
     """A search with another run of one window, where each model leaves so much."""
     series = SimpleNamespace(other_runs=other_runs)
-    problem = SimpleNamespace(residuals_on=lambda names, windows: [np.full(5, left[names])])
+    problem = Problem(residuals_on=lambda names, windows: [np.full(5, left[names])])
     return SimpleNamespace(
         data_split=series, problem=problem, words=[], windows=lambda sections, length: sections
     )
@@ -130,7 +140,7 @@ def run_of(left: dict[tuple[str, ...], float]) -> Any:
     wave = 1000 * np.sin(np.linspace(0, 20, WHOLE))
     measured: Any = SimpleNamespace(values={"x": wave})
     section = Section(measured, 0, WHOLE)
-    problem = SimpleNamespace(
+    problem = Problem(
         residuals_on=lambda names, windows: [np.full(WHOLE, left[names])], sigma={"x": 1.0}
     )
     return SimpleNamespace(
@@ -221,6 +231,21 @@ def test_of_two_forms_of_one_model_that_with_a_physical_sign_is_named(
     assert other.chosen.names == {named}
     if named == DRY:
         assert [other.models[number].names for number, _ in other.choice.ties] == [{OFFSET}]
+
+
+def test_a_start_led_astray_refuses_no_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the other model begins, this one would leave as little."""
+    fewer: Any = Names(())
+    more: Any = Names((DRY,))
+    there = run_of({(): 10.0, (DRY,): 40.0})
+    harm = raises_unseen(there, fewer, more, [WHOLE])
+    assert harm == f"multiplies the error on unseen windows of {WHOLE} samples by 4"
+
+    def begin_anew(windows: Any, others: Any) -> Any:
+        return SimpleNamespace(squares=np.minimum(windows.squares, others.squares))
+
+    monkeypatch.setattr(unseen, "restart_from_others", begin_anew)
+    assert raises_unseen(there, fewer, more, [WHOLE]) == ""
 
 
 def test_a_rival_that_is_worse_in_windows_is_not_told() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.residual import Section
+from tracewire.residual import Section, restart_from_others
 from tracewire.trace.choose.choice import beats_declared, log_scores
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.search.search import Search
@@ -28,7 +28,7 @@ def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[i
     """
     options, unseen = search.options, search.data_split.unseen
     for length in lengths:
-        before, after = (squares_on(search, unseen, trial, length) for trial in (fewer, more))
+        before, after = squares_of_both(search, unseen, fewer, more, length)
         if not np.isfinite(before.sum()):
             continue
         longest = min(length, _longest(unseen))
@@ -85,8 +85,8 @@ def lowers_unseen(search: Search, fewer: Trial, more: Trial, length: int) -> boo
     """Whether a model lowers the error of one with fewer effects on unseen windows of a length, by
     more than chance."""
     unseen = search.data_split.unseen
-    before, after = (float(squares_on(search, unseen, t, length).sum()) for t in (fewer, more))
-    return (1 + search.options.harm) ** 2 * after < before
+    before, after = squares_of_both(search, unseen, fewer, more, length)
+    return (1 + search.options.harm) ** 2 * float(after.sum()) < float(before.sum())
 
 
 def is_no_better_on_claim(search: Search, fewer: Trial, more: Trial) -> bool:
@@ -101,7 +101,7 @@ def is_no_better_on_claim(search: Search, fewer: Trial, more: Trial) -> bool:
     if at_noise or before - after >= options.claimed * (before - count):
         return False
     lost = before >= _tracked(search, claim)
-    before, after = (float(squares_on(search, claim, t, short).sum()) for t in (fewer, more))
+    before, after = (float(x.sum()) for x in squares_of_both(search, claim, fewer, more, short))
     if lost:
         return after >= (1 + options.harm) ** 2 * before
     return before - after <= options.claimed * max(before - count, 0.0)
@@ -122,7 +122,7 @@ def _whole_runs(search: Search, fewer: Trial, more: Trial) -> tuple[float, float
     residuals; nothing where the first has lost track of the data."""
     unseen = search.data_split.unseen
     whole = _longest(unseen)
-    before, after = (squares_on(search, unseen, trial, whole) for trial in (fewer, more))
+    before, after = squares_of_both(search, unseen, fewer, more, whole)
     if not before.sum() < _tracked(search, unseen):
         return 0.0, 0.0, 0
     return float(before.sum()), float(after.sum()), _count(unseen)
@@ -217,6 +217,15 @@ def prune_by_other_runs(search: Search, prediction: Prediction) -> Prediction:
             )
             return prune_by_other_runs(search, one)
     return prediction
+
+
+def squares_of_both(
+    search: Search, sections: Sequence[Section], fewer: Trial, more: Trial, length: int
+) -> tuple[Vector, Vector]:
+    """`squares_on` of two models, each of which begins a window also where the other one does."""
+    windows = [w for section in sections for w in search.windows([section], length)]
+    one, other = (search.problem.windows_on(trial, windows) for trial in (fewer, more))
+    return restart_from_others(one, other).squares, restart_from_others(other, one).squares
 
 
 def squares_on(search: Search, sections: Sequence[Section], trial: Trial, length: int) -> Vector:
