@@ -303,6 +303,10 @@ class SearchOptions:
     if it is uncommon or has a rival that does as well. Seen on five rigs: 5e-5 of a drift, 1.6e-4
     of a wave, 6e-6 of a drive's gain, 2e-4 of a play, 4e-4 of a bias, where other names were
     right."""
+    rough: float = 3.0
+    """How many times as much the squared error may rise without such an effect: its standard error
+    says roughly what it takes, and says next to nothing where other effects hold its coefficient.
+    Seen on a law that no block has: 3e-4 of the excess, and 50 times the noise."""
     slight: float = 0.1
     """The part of the squared error of the noise below which an effect beside others is a part of
     what is left, where that is no noise either. Seen on four rigs: 0.02 to 0.06."""

@@ -109,6 +109,7 @@ def test_a_term_that_is_left_out_does_not_come_back_as_an_effect() -> None:
     ("before", "after", "effects", "length", "judged"),
     [
         (4.0, 1.1, 1, 900, "effect"),
+        (400.0, 52.0, 1, 900, None),  # it is not at the noise any more
         (4.0, 1.9, 1, 900, None),  # three tenths of what was above the noise are left
         (1.6, 1.4, 1, 900, None),
         (1.6, 1.4, 1, 100, "effect"),  # where the declared model does not bear such windows
@@ -125,14 +126,35 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     search: Any = SimpleNamespace(options=TraceOptions())
-    declared = SimpleNamespace(reduced_chi2=before, length=length, effects=())
-    best = SimpleNamespace(reduced_chi2=after, length=900, effects=("coulomb",) * effects)
+    declared: Any = SimpleNamespace(reduced_chi2=before, length=length, effects=())
+    best: Any = SimpleNamespace(
+        reduced_chi2=after, length=900, effects=("coulomb",) * effects, degrees_of_freedom=1000
+    )
     final = SimpleNamespace(declared=declared, best=best)
     monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
     monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
-    found = judge_at_noise(search, declared, best)  # type: ignore[arg-type]
+    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [])
+    found = judge_at_noise(search, declared, best)
     assert (found.verdict if found else None) == judged
+
+
+def test_a_law_whose_shape_is_on_its_upper_bound_must_predict(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    search: Any = SimpleNamespace(options=TraceOptions())
+    declared: Any = SimpleNamespace(reduced_chi2=400.0, length=900, effects=())
+    best: Any = SimpleNamespace(
+        reduced_chi2=1.1, length=900, effects=("cogging @ alpha",), degrees_of_freedom=1000
+    )
+    final = SimpleNamespace(declared=declared, best=best)
+    monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
+    monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
+    monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
+    for words, judged in (("", "effect"), ("the pitch of cogging sits on its upper bound", None)):
+        monkeypatch.setattr(verdict, "_describe_shape_on_bound", lambda trial, words=words: words)
+        found = judge_at_noise(search, declared, best)
+        assert (found.verdict if found else None) == judged
 
 
 @pytest.mark.parametrize(("longer", "told"), [(9.0, True), (1.2, False)])
@@ -146,6 +168,7 @@ def test_what_longer_windows_show_beside_named_effects_is_told(
         declared=declared,
         best=SimpleNamespace(reduced_chi2=longer, length=209, effects=short.effects),
     )
+    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [])
     monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
     monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)

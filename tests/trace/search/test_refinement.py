@@ -219,9 +219,10 @@ def without_trifles(
     monkeypatch: pytest.MonkeyPatch,
     chance: float = 1.0,
     rivals: Mapping[str, Sequence[Any]] | None = None,
+    rise: float = 0.0,
 ) -> tuple[list[str], list[str]]:
-    """The effects that stay and what is said, where the declared model leaves so much more and what
-    is left has this chance to be noise."""
+    """The effects that stay and what is said, where the declared model leaves so much more, what is
+    left has this chance to be noise, and the sum of squares rises so much without one."""
     search: Any = SimpleNamespace(
         options=OPTIONS,
         tell=lambda _: None,
@@ -231,7 +232,7 @@ def without_trifles(
     monkeypatch.setattr(
         import_module("tracewire.trace.search.refinement"),
         "_run_refit",
-        lambda search, best, kept: SimpleNamespace(effects=kept),
+        lambda search, best, kept: SimpleNamespace(effects=kept, rss=best.rss + rise),
     )
     declared: Any = SimpleNamespace(reduced_chi2=best.reduced_chi2 + missing)
     found = _drop_trifles(search, best, declared, rivals or {})
@@ -265,6 +266,17 @@ def test_what_explains_next_to_nothing_and_may_be_another_law_is_a_refinement(
         f" missing{told}, so it may stand for anything, and is not named"
     )
     assert said == ([words] if told is not None else [])
+
+
+@pytest.mark.parametrize(("rise", "stays"), [(1400.0, False), (1600.0, True)])
+def test_an_effect_without_which_the_error_rises_is_no_trifle(
+    rise: float, stays: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its coefficient is uncertain, as others hold it: 500 of 1e6 variances are a trifle."""
+    best = sized(1.0, coulomb=3000.0, viscous_drift=10.0)
+    kept, said = without_trifles(best, 1000.0, monkeypatch, rise=rise)
+    assert kept == ["coulomb", "viscous_drift"][: 1 + stays]
+    assert len(said) == 1 - stays
 
 
 @pytest.mark.parametrize(

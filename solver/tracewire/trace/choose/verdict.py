@@ -111,8 +111,8 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
 
     Windows whose starts are free swallow what is slower than they are: nothing is missing only
     where the declared model is near the noise on the longest windows that it bears, too. Effects
-    must take most of what was above the noise, or predict; and three small laws follow any
-    smooth force, so that three must predict, too.
+    must take most of what was above the noise, or predict. Three small laws follow any smooth
+    force, and a shape on its upper bound stands for another law: these must predict, too.
     """
     slow = is_slow_noise(search, best)
     if not slow and not is_at_noise(search, best):
@@ -122,7 +122,14 @@ def judge_at_noise(search: Search, first: Trial, best: Trial) -> Judgement | Non
         few = len(final.best.effects) < search.options.many_effects
         if not few or _share_of_excess(final) < search.options.explained_at_noise:
             return None
-        if final.best.length > best.length and final.best.reduced_chi2 > search.options.lost:
+        longer = final.best.length > best.length
+        if not longer and final.best.reduced_chi2 > max(
+            search.options.lost, noise_limit(search, final.best)
+        ):
+            return None
+        if _describe_shape_on_bound(final.best):
+            return None
+        if longer and final.best.reduced_chi2 > search.options.lost:
             search.words.append(_describe_longer_windows(best, final.best))
         return Judgement("effect", final)
     lost = final.best.length > best.length and final.best.reduced_chi2 > search.options.lost

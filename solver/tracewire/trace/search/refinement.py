@@ -275,16 +275,20 @@ def _drop_trifles(
     """The best model without effects that explain next to nothing of what was missing and may stand
     for anything: waves, drifts and their kin, and those with rivals that do as well. What is left
     of laws that are only nearly right has the shape of some effect. One of z standard errors takes
-    about z^2 variances off the sum of squares. What takes more than the noise has, and leaves
-    nothing, is no trifle."""
+    about z^2 variances off the sum of squares, but where others hold it far more. What takes more
+    than the noise has, and leaves nothing, is no trifle."""
     options = search.options
+    needed = set[str]()
     while len(best.effects) > 1:
         excess = (declared.reduced_chi2 - best.reduced_chi2) * best.count
         for effect in _least_first(best, options.uncommon):
+            if str(effect) in needed:
+                continue
             taken = _errors_from_nothing(best, effect) ** 2 * best.reduced_chi2
             ties = [str(rival.effect) for rival in rivals.get(str(effect), ()) if rival.tied]
             unsure = effect.candidate.effect in options.uncommon or ties
-            small = unsure and taken < options.search.trifle * excess
+            most = options.search.trifle * excess
+            small = unsure and taken < most
             if small and not (taken > best.rss and _is_complete(search, best)):
                 effective_fraction = (
                     f"{100 * taken / excess:.2g} % of the squared error that was missing"
@@ -292,6 +296,7 @@ def _drop_trifles(
                 as_well = f", as {' and '.join(ties)} would" if ties else ""
                 words = f"it takes only {effective_fraction}{as_well}, so it may stand for anything"
                 break
+            most = options.search.slight * best.rss
             if _is_part_of_remainder(search, best, taken):
                 effective_fraction = (
                     f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
@@ -302,8 +307,9 @@ def _drop_trifles(
             return best
         search.tell(f"trying without {effect}")
         smaller = _run_refit(search, best, [e for e in best.effects if e is not effect])
-        if smaller is None:
-            return best
+        if smaller is None or smaller.rss - best.rss > options.search.rough * most:
+            needed.add(str(effect))
+            continue
         best = smaller
         search.words.append(f"{effect} would be a refinement: {words}, and is not named")
     return best
