@@ -82,8 +82,11 @@ class Candidate:
 
     @property
     def most(self) -> float:
-        """How far the coefficient may be from where the effect vanishes."""
-        return self.limits.get(self.parameter, (0.0, math.inf))[1] - self.neutral
+        """How far the coefficient may be from where the effect vanishes. A fit may make up for more
+        by its shapes, but not by those that are scanned."""
+        if not self.scanned:
+            return math.inf
+        return self.limits[self.parameter][1] - self.neutral
 
     @property
     def imitated(self) -> frozenset[str]:

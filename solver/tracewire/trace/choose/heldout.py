@@ -73,8 +73,10 @@ class Finalist:
 
     @property
     def numbers(self) -> int:
-        """How many numbers are fitted beside the starts, without those that vanished."""
-        return len(self.trials[0].windows.values) - len(self.vanished)
+        """How many numbers are fitted or scanned beside the starts, without those that vanished."""
+        first = self.trials[0]
+        scanned = sum(len(effect.candidate.scanned) for effect in first.effects)
+        return len(first.windows.values) + scanned - len(self.vanished)
 
     @property
     def at_bounds(self) -> tuple[str, ...]:

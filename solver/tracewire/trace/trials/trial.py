@@ -75,8 +75,9 @@ class Trial:
 
     @property
     def unknowns(self) -> int:
-        """How many numbers were fitted, start values included."""
-        return len(self.windows.values) + sum(len(s) for s in self.windows.starts)
+        """How many numbers were fitted or scanned, start values included."""
+        scanned = sum(len(effect.candidate.scanned) for effect in self.effects)
+        return len(self.windows.values) + scanned + sum(len(s) for s in self.windows.starts)
 
     @property
     def degrees_of_freedom(self) -> int:
