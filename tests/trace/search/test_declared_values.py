@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from oracles.oscillator import problem_of, record, search_of
+from tracewire.errors import FitError
 from tracewire.trace.search.search import Search, moved_values
 
 LEVEL, DECAY, DRAG = 1.2, 1.0, 0.1  # m/s^2, s/m, 1/m
@@ -76,6 +77,19 @@ def test_where_no_value_has_moved_far_nothing_is_looked_for(search: Search) -> N
     options = replace(search.options, moved=math.inf)
     near = replace(search, problem=replace(search.problem, options=options))
     assert near.add_effect_at_declared_values(near.fit_declared()) is None
+
+
+def test_where_the_model_does_not_run_at_the_declared_values_nothing_is_looked_for(
+    search: Search,
+) -> None:
+    class Stopped(Search):
+        """A search whose model does not run with its places open."""
+
+        def screen(self, trial: Any) -> Any:
+            raise FitError.one("the run stopped at t = 1 s")
+
+    own = Stopped(search.problem, search.data_split, search.places, search.shortest, {}, print, [])
+    assert own.add_effect_at_declared_values(own.fit_declared()) is None
 
 
 def test_the_values_that_have_moved(search: Search) -> None:

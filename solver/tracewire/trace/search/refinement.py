@@ -290,18 +290,14 @@ def _drop_trifles(
             most = options.search.trifle * excess
             small = unsure and taken < most
             if small and not (taken > best.rss and _is_complete(search, best)):
-                effective_fraction = (
-                    f"{100 * taken / excess:.2g} % of the squared error that was missing"
-                )
+                part = f"{100 * taken / excess:.2g} % of the squared error that was missing"
                 as_well = f", as {' and '.join(ties)} would" if ties else ""
-                words = f"it takes only {effective_fraction}{as_well}, so it may stand for anything"
+                words = f"it takes only {part}{as_well}, so it may stand for anything"
                 break
             most = options.search.slight * best.rss
             if _is_part_of_remainder(search, best, taken):
-                effective_fraction = (
-                    f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
-                )
-                words = f"it takes {effective_fraction}, and more is left that no effect takes"
+                part = f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
+                words = f"it takes {part}, and more is left that no effect takes"
                 break
         else:
             return best

@@ -245,7 +245,13 @@ class Search:
         if not values or declared.reduced_chi2 < self.options.at_noise:
             return None
         self.tell("screening effects at the declared values")
-        screen = self.screen(_at_values(self.problem, declared, values))
+        there = _at_values(self.problem, declared, values)
+        if not all(near.ran for near in there.windows.linearisations):
+            return None
+        try:
+            screen = self.screen(there)
+        except FitError:  # it does not run there with its places open
+            return None
         found = shortlist(screen, self.options.effects, self.options.screen.singles)
         proposals = [replace(proposal, values=values) for proposal in found]
         return self._add_best_of(declared, screen, screen.p_value(), proposals)
