@@ -35,11 +35,28 @@ def test_the_palette_ends_with_the_libraries(call: Any, site: Path) -> None:
 
 def test_the_palette_says_what_a_trace_tries(call: Any) -> None:
     lines = call("blocks").out.splitlines()
-    head = lines.index("effects that a trace tries")
+    head = lines.index("effects that a trace tries; --effects says what each is")
     sums, drives, sensors = (line.split(None, 3) for line in lines[head + 1 : head + 4])
     assert sums[:3] == ["at", "a", "sum"] and "coulomb" in sums[3]
     assert drives[:3] == ["in", "a", "drive"] and "drive_lag" in drives[3]
     assert sensors[:3] == ["of", "a", "sensor"] and "sensor_quad" in sensors[3]
+
+
+def test_effects_are_listed_with_place_and_meaning(call: Any) -> None:
+    lines = call("blocks", "--effects").out.splitlines()
+    assert lines[0].split() == ["place", "effect", "what", "it", "is"]
+    (lag,) = (line for line in lines if " drive_lag " in line)
+    assert lag.startswith("in a drive") and lag.endswith(".")
+    rows = call("blocks", "--effects", "--json").data["effects"]
+    assert {"place": "of a sensor", "effect": "sensor_delay", "what": "A delay."} in rows
+    assert len(rows) == len(lines) - 1
+
+
+def test_effects_are_no_block_and_stand_alone(call: Any) -> None:
+    told = call("blocks", "effects")
+    assert told.code == 2 and "'tracewire blocks --effects' lists the effects" in told.err
+    told = call("blocks", "coulomb", "--effects")
+    assert told.code == 2 and "--effects lists all effects, and coulomb is of blocks" in told.err
 
 
 def test_to_list_the_libraries_runs_none_of_them(call: Any, site: Path) -> None:

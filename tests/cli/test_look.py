@@ -107,6 +107,20 @@ def test_check_tells_the_noise_that_is_declared_in_si(call: Any, swing: Path) ->
     assert series["sigma"]["theta"] == pytest.approx(np.radians(0.1))
 
 
+def test_check_tells_noise_and_rounding_in_the_unit_that_the_diagram_gives_the_column(
+    call: Any, swing: Path
+) -> None:
+    replaced(swing, "column: angle}", "column: angle, unit: deg}")
+    angles = np.round(20 * np.sin(0.3 * np.arange(400)))
+    rows = [f"{t:.2f},{x:g}" for t, x in zip(0.01 * np.arange(400), angles, strict=True)]
+    (swing.parent / "run_1.csv").write_text("\n".join(["t,angle", *rows, ""]))
+    told = call("check", swing).out
+    assert "! theta is read in steps of 1 deg (40 over its range)" in told
+    (series,) = call("check", swing, "--json").data["measured"]
+    sigma = np.degrees(series["estimated_sigma"]["theta"])
+    assert f"- theta: noise of σ = {sigma:.4g} deg, estimated (" in told
+
+
 def test_check_tells_the_noise_that_it_estimates(call: Any, swing: Path) -> None:
     noise = 0.01 * np.random.default_rng(2).standard_normal(400)
     rows = [f"{t:.3f},{x:.6f}" for t, x in zip(0.01 * np.arange(400), noise, strict=True)]

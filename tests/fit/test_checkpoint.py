@@ -18,7 +18,8 @@ MEASURED = [series(oscillation(T, 0.9))]
 
 
 def fitted(method: str, iterations: float = 40, **more: Any) -> Fit:
-    options = optimset(MaxIter=iterations, TolX=1e-9, TolFun=1e-16, Display="off")
+    small = {"TolX": 1e-9, "TolFun": 1e-16} if method == "fminsearch" else {}
+    options = optimset(MaxIter=iterations, Display="off", **small)
     return fit(MODEL, MEASURED, method=method, options=options, rtol=1e-8, **more)
 
 

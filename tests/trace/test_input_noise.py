@@ -71,6 +71,7 @@ def without_sigma(file: Path) -> Path:
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("declared", [True, False])
 @pytest.mark.parametrize("known", [True, False])
 def test_noise_of_a_force_is_no_effect_and_hides_none(
@@ -87,9 +88,11 @@ def test_noise_of_a_force_is_no_effect_and_hides_none(
         assert "0.02 N in 'F'" in word and "Say `sigma:` at an input" in word
 
 
+@pytest.mark.slow
 def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path: Path) -> None:
     file = without_sigma(write_record(tmp_path, True))
-    found = trace(compile(read(file)), options={"effects": 1, "input_shown": 0.0})
+    in_drive = {"effects": 1, "only": ["drive.F"], "input_shown": 0.0}
+    found = trace(compile(read(file)), options=in_drive)
     assert found.verdict == "unexplained"
     (noisy,) = found.noisy_inputs
     assert noisy.name == "F" and noisy.left < 1.5
@@ -101,7 +104,7 @@ def test_what_the_noise_of_an_input_would_explain_is_told_with_its_size(tmp_path
         * noisy.sigma
         / float(np.std(np.loadtxt(file.parent / "run.csv", delimiter=",", skiprows=1)[:, 2]))
     )
-    options = {"effects": 1, "input_noise": most, "input_shown": 0.0}
+    options = {**in_drive, "input_noise": most}
     assert trace(compile(read(file)), options=options).noisy_inputs == ()
 
 

@@ -12,7 +12,7 @@ import typer
 from tracewire.cli.options import AsJson, Debug, Libraries
 from tracewire.cli.output import check_target, note, print_json, print_text, working
 from tracewire.cli.reporting import ReportFile
-from tracewire.errors import BlockError
+from tracewire.errors import BlockError, OptionError
 
 if TYPE_CHECKING:
     from tracewire.diagram import Diagram
@@ -28,6 +28,9 @@ def blocks(
             show_default=False,
         ),
     ] = None,
+    effects: Annotated[
+        bool, typer.Option("--effects", help="List the effects that a trace tries instead.")
+    ] = False,
     report: ReportFile = None,
     library: Libraries = None,
     as_json: AsJson = False,
@@ -41,17 +44,39 @@ def blocks(
     \b
     Examples:
       tracewire blocks
+      tracewire blocks --effects
       tracewire blocks dry_friction
       tracewire blocks INTEGRAL_m
       tracewire blocks tracewire --report blocks.html
     """
     check_target(report, (".md", ".html"), "report")
+    if effects:
+        _tell_effects(name, report, library or (), as_json)
+        return
     found = _found(name, library or ())
     written = {} if report is None else {"written": [_write(report, found)]}
     if as_json:
         print_json(_json(found) | written)
     else:
         print_text(_text(found) if report is None else f"written: {report}")
+
+
+def _tell_effects(
+    name: str | None, report: str | None, libraries: Sequence[str], as_json: bool
+) -> None:
+    """Print the effects that a trace tries. Raises OptionError: what goes not with these."""
+    from tracewire.library import effect_rows, effect_table, load_library
+
+    if name is not None or report is not None:
+        what = f"--effects lists all effects, and {name or f'--report {report}'} is of blocks"
+        raise OptionError.one(what, hint="Give one of the two.")
+    known = load_library(libraries)
+    keys = ("place", "effect", "what")
+    if as_json:
+        rows = [dict(zip(keys, row, strict=True)) for row in effect_rows(known)]
+        print_json({"effects": rows})
+    else:
+        print_text(effect_table(known))
 
 
 @dataclass(frozen=True)
@@ -107,6 +132,9 @@ def _refuse_of_others(name: str) -> None:
     """Say which installed library has a block or subsystem of this name. Raises BlockError."""
     from tracewire.diagram import who_has
 
+    if name == "effects":
+        hint = "'tracewire blocks --effects' lists the effects that a trace tries."
+        raise BlockError.one("'effects' is no block", hint=hint)
     if hint := who_has(name):
         raise BlockError.one(f"'{name}' is no block of tracewire", hint=hint)
 
@@ -154,15 +182,14 @@ def _more_text(found: _Found) -> str:
 
 
 def _effects_text(library: Library) -> str:
-    """The effects that a trace tries, by the kind of place."""
-    from tracewire.library import SENSOR_TERMS
+    """The names of the effects that a trace tries, by the kind of place."""
+    from tracewire.library import effect_rows
 
-    rows: dict[str, str] = {}
-    for kind, words in (("sum", "at a sum"), ("drive", "in a drive")):
-        names = [n for n, b in library.effects().items() if b.effect and b.effect.place == kind]
-        rows[words] = ", ".join(sorted(names))
-    rows["of a sensor"] = ", ".join(f"sensor_{term}" for term in SENSOR_TERMS)
-    return _listed("effects that a trace tries", rows)
+    names: dict[str, list[str]] = {}
+    for place, effect, _ in effect_rows(library):
+        names.setdefault(place, []).append(effect)
+    rows = {place: ", ".join(some) for place, some in names.items()}
+    return _listed("effects that a trace tries; --effects says what each is", rows)
 
 
 def _listed(head: str, rows: Mapping[str, str]) -> str:

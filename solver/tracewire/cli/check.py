@@ -104,7 +104,7 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
 
             refuse_readers_of_free(model)
             series = load_measured(model, driving=True, series=present)
-            measured = [series_contents(one, model.flat.units) for one in series]
+            measured = [series_contents(one, model) for one in series]
             found["free"] = free_names(model, series)
     if not quiet:
         print_text(contents_text(found, measured))

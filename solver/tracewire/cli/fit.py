@@ -39,10 +39,10 @@ class Search:
     method: Annotated[
         str,
         typer.Option(
-            help="fminsearch, least_squares, growing_windows, shooting, multistart or "
-            "multiple_shooting."
+            help="least_squares, growing_windows, multiple_shooting, shooting, multistart or "
+            "fminsearch."
         ),
-    ] = "fminsearch"
+    ] = "least_squares"
     free: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="A parameter to fit, instead of those with `fit:`."),
@@ -139,10 +139,9 @@ def fit(
 
     \b
     Examples:
-      tracewire fit pendulum.yaml
-      tracewire fit pendulum.yaml --method least_squares --report fit.html
-      tracewire fit pendulum.yaml --fix c --profile w0_squared
-      tracewire fit pendulum.yaml --MaxIter 150 --save fit.json --apply
+      tracewire fit pendulum.yaml --report fit.html
+      tracewire fit pendulum.yaml --fix c --profile w0_squared --apply
+      tracewire fit pendulum.yaml --method fminsearch --MaxIter 150 --save fit.json
     """
     from tracewire.diagram import SetValues, patch
     from tracewire.fit import fit as fit_model

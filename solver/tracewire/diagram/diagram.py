@@ -361,6 +361,20 @@ class Diagram:
             what = f"a diagram has no attribute '{name}'"
             raise AttributeError(f"{what}. Where a model is meant: tracewire.compile(diagram).")
 
+    def users_unit(self, signal: str, unit: str) -> tuple[str, float]:
+        """The unit in which a user has a signal or an input, and its factor to SI: `deg`, pi/180.
+
+        It is that of the measured files; where these have none, or differ, that in which figures
+        show the signal; else its `unit` in SI.
+        """
+        every = [{**series.inputs, **series.channels} for series in self.measured.values()]
+        channels = [known[signal] for known in every if signal in known]
+        declared = {(channel.declared or "", channel.factor) for channel in channels}
+        if len(declared) == 1 and (found := declared.pop())[0]:
+            return found
+        own = self.blocks.get(signal) or self.inputs.get(signal)
+        return (own.shown.unit, own.shown.factor) if own and own.shown.unit else (unit, 1.0)
+
     def _repr_svg_(self) -> str:
         """The picture of the diagram, as a notebook shows it."""
         # the package stands above its subpackages: they do not import it, but it is there

@@ -73,12 +73,13 @@ def compare_series(
     after: Mapping[str, Vector],
 ) -> tuple[Comparison, ...]:
     """Every signal of every series beside what is shown before and after."""
+    units = model.flat.units
     return tuple(
         Comparison(
             series=m.name,
             use=m.use,
             signal=signal,
-            unit=model.flat.units.get(signal, ""),
+            unit=units.get(signal, ""),
             t=m.t,
             measured=values,
             before=_on_turns(values, before[m.name][:, n], m.periods.get(signal, 0.0)),
@@ -86,6 +87,7 @@ def compare_series(
             counts=m.t >= m.counts_from,
             period=m.periods.get(signal, 0.0),
             sigma=m.sigma.get(signal),
+            users_unit=model.diagram.users_unit(signal, units.get(signal, "")),
         )
         for m in series
         for n, (signal, values) in enumerate(m.values.items())

@@ -45,7 +45,8 @@ class Diagnosis:
     the simulated signal itself, the probability that something independent of it follows it as
     closely. `outliers` is the share of samples beyond 4 robust standard deviations. `words` says it
     in sentences, `is_missing` whether it says that something is missing, which no residual of a
-    search that ended before a minimum does.
+    search that ended before a minimum does. `users_unit` is the unit in which the user has the
+    signal, with its factor to SI.
     """
 
     series: str
@@ -70,6 +71,7 @@ class Diagnosis:
     driven: InputNoise | None = None
     estimate: NoiseEstimate | None = None
     is_missing: bool = False
+    users_unit: tuple[str, float] = ("", 1.0)
 
     @property
     def is_out_of_step(self) -> bool:
@@ -232,6 +234,7 @@ def _diagnosis(
         use=comparison.use,
         signal=comparison.signal,
         unit=comparison.unit,
+        users_unit=comparison.users_unit,
         residual=residual,
         size=float(np.sqrt(np.mean(residual**2))),
         variation=float(np.std(comparison.measured[rows])),
@@ -289,7 +292,9 @@ def _with_words(found: Diagnosis, measured: Measured, finished: bool) -> Diagnos
             f"Without that, the residual is {found.size / found.noise:.2g} times the noise",
         ]
     elif estimate and doubtful and limit < found.size <= DIAGNOSIS.at_noise * estimate.high:
-        between = f"{estimate.low:.2g} and {estimate.high:.2g} {found.unit}".rstrip()
+        unit, factor = found.users_unit
+        low, high = estimate.low / factor, estimate.high / factor
+        between = f"{low:.2g} and {high:.2g} {unit or found.unit}".rstrip()
         words = [
             f"the residual is {times:.2g} times the noise and {over}",
             "It may be noise alone: the noise is estimated to lie between "

@@ -23,6 +23,7 @@ from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.refusals import (
     refuse_few_samples,
     refuse_presets_of_free,
+    refuse_simplex_tolerances,
     refuse_unusable,
 )
 from tracewire.fit.remarks import (
@@ -62,7 +63,7 @@ def fit(
     model: Model,
     measured: Sequence[Measured] | None = None,
     *,
-    method: str = "fminsearch",
+    method: str = "least_squares",
     free: Sequence[str] | None = None,
     fixed: Sequence[str] = (),
     parameters: Mapping[str, float] | None = None,
@@ -79,8 +80,8 @@ def fit(
     """Fit the free parameters of a model to the train series of its diagram.
 
     `method` is one of
+      `least_squares`      a trust region on forward sensitivities: most problems;
       `fminsearch`         Scilab's simplex, as in paper A's appendix;
-      `least_squares`      scipy's trust region on forward sensitivities: from nearby;
       `growing_windows`    least squares on growing parts of each series: long, unstable records;
       `multiple_shooting`  least squares on segments with free start states that grow together:
                            chaotic records;
@@ -108,6 +109,8 @@ def fit(
         options = options_of(Options, given, "a fit", inspect.signature(fit).parameters)
     if method not in METHODS:
         raise OptionError([unknown("method", method, METHODS)])
+    if options is not None:
+        refuse_simplex_tolerances(options, method)
     began = time.perf_counter()
     if measured is None:
         measured = load_measured(model, parameters=parameters)

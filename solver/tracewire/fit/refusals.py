@@ -6,8 +6,18 @@ from collections.abc import Sequence
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem
+from tracewire.fit.optimset import Options
 from tracewire.residual import Criterion, Measured
 from tracewire.solve import parameter_values
+
+
+def refuse_simplex_tolerances(options: Options, method: str) -> None:
+    """Raises OptionError: tolerances of the simplex for a method that has none."""
+    usual = Options()
+    given = [name for name in ("TolX", "TolFun") if getattr(options, name) != getattr(usual, name)]
+    if given and method != "fminsearch":
+        what = f"{' and '.join(given)} of a search by {method}: only fminsearch has such tolerances"
+        raise OptionError.one(what, hint="Take the method fminsearch, or leave them out.")
 
 
 def refuse_unusable(series: Sequence[Measured], train: Sequence[Measured]) -> None:

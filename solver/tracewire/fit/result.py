@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,8 @@ class Comparison:
 
     `t` (N,) in s; `measured`, `before` and `after` (N,) in SI; `counts` (N,) marks the samples that
     the criterion counts. `period` is that of a signal compared modulo it, whose turns go on from
-    sample to sample, and `before` and `after` are on the turns of `measured`; else 0.
+    sample to sample, and `before` and `after` are on the turns of `measured`; else 0. `users_unit`
+    is the unit in which the user has the signal (`Diagram.users_unit`), with its factor to SI.
     """
 
     series: str
@@ -36,6 +37,22 @@ class Comparison:
     counts: NDArray[np.bool_]
     period: float = 0.0
     sigma: float | None = None
+    users_unit: tuple[str, float] = ("", 1.0)
+
+    @property
+    def as_shown(self) -> Comparison:
+        """The comparison in the user's unit, as tables and figures show it."""
+        unit, factor = self.users_unit
+        return replace(
+            self,
+            unit=unit or self.unit,
+            measured=self.measured / factor,
+            before=self.before / factor,
+            after=self.after / factor,
+            period=self.period / factor,
+            sigma=self.sigma and self.sigma / factor,
+            users_unit=("", 1.0),
+        )
 
     def residual(self, simulated: Vector) -> Vector:
         """Measured - simulated (N,) in SI, of a periodic signal modulo its period."""

@@ -10,6 +10,7 @@ from tracewire.library.declare import Block
 from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
+from tracewire.library.sensor import SENSOR_TERMS
 from tracewire.library.synonyms import OTHERWISE, find_instead, find_synonym, other_names
 
 
@@ -17,6 +18,22 @@ def palette(library: Library) -> str:
     """A table of all blocks: family, block and the sentence that says what it is."""
     rows = sorted((library.families.get(name, ""), name, library[name].doc) for name in library)
     return _table([("family", "block", "what it is"), *rows])
+
+
+def effect_rows(library: Library) -> list[tuple[str, str, str]]:
+    """Of each effect that a trace tries where it is tried, its name, and what it is."""
+    rows = []
+    for kind, words in (("sum", "at a sum"), ("drive", "in a drive")):
+        kinds = {n: b for n, b in library.effects().items() if b.effect and b.effect.place == kind}
+        rows += [(words, name, kinds[name].doc) for name in sorted(kinds)]
+    sensors = [(f"sensor_{name}", term.words) for name, term in SENSOR_TERMS.items()]
+    rows += [("of a sensor", name, f"{text[0].upper()}{text[1:]}.") for name, text in sensors]
+    return rows
+
+
+def effect_table(library: Library) -> str:
+    """A table of the effects that a trace tries."""
+    return _table([("place", "effect", "what it is"), *effect_rows(library)])
 
 
 @dataclass(frozen=True)

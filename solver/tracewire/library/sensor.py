@@ -26,6 +26,13 @@ class SensorTerm:
     low: float = -math.inf
     sign: Literal[0, 1] = 0
 
+    def unit_of(self, unit: str) -> str:
+        """The unit of the number, where that of the signal is `unit`; '' where it is not known."""
+        if "{}" in self.unit and not unit:
+            return ""
+        inner = self.unit.startswith("1/") and ("/" in unit or " " in unit)
+        return self.unit.format(f"({unit})" if inner else unit)
+
     def factor(self, factor: float) -> float:
         """The factor to SI of the number, where that of the signal is `factor`."""
         if self.unit.startswith("1/"):

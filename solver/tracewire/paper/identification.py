@@ -136,6 +136,7 @@ def _steps(model_of: Callable[[str], Model], tell: Callable[[str], None]) -> tup
             fitted = fit(
                 model,
                 [only],
+                method="fminsearch",
                 free=free,
                 parameters=values,
                 options=optimset(MaxIter=iterations, **SEARCH),

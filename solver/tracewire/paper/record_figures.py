@@ -32,7 +32,8 @@ def beside_the_record(task: Task) -> Figure:
     values, told = {}, ""
     if task.figure.iterations:
         steps = task.of(3, task.figure.iterations, task.figure.iterations)
-        found = fit(task.model, options=optimset(MaxIter=steps, Display="off"))
+        limit = optimset(MaxIter=steps, Display="off")
+        found = fit(task.model, method="fminsearch", options=limit)
         values = dict(found.values)
         told = f"criterion {found.criterion_before:.3g} rad², after {found.iterations} iterations "
         told += f"of the simplex {found.criterion:.3g} rad²"

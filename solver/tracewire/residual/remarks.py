@@ -55,10 +55,10 @@ def remarks_of(
         found += time_remarks(read.t)
     for name, column in read.columns.items():
         exact = _is_command(series.inputs.get(name.removeprefix("input ")), column)
-        unit, cleaned = read.unit(name).text, name in _without_outliers(series)
-        said = _declared_noise(series, read, name)
+        cleaned, noise = name in _without_outliers(series), _declared_noise(series, read, name)
+        unit, factor = _unit_of_column(series, read, name)
         found += signal_remarks(
-            name, read.t, column, unit, exact=exact, cleaned=cleaned, noise=said
+            name, read.t, column / factor, unit, exact=exact, cleaned=cleaned, noise=noise / factor
         )
     found += _on_span(model, series, read, values, zero)
     states = {state.name: state for state in model.flat.states}
@@ -89,9 +89,22 @@ def remarks_of(
     return tuple(found)
 
 
+def _channel_of(series: Series, name: str) -> Channel | None:
+    """The channel of a column by its name in a record."""
+    return series.channels.get(name) or series.inputs.get(name.removeprefix("input "))
+
+
+def _unit_of_column(series: Series, read: Record, name: str) -> tuple[str, float]:
+    """The unit that a diagram gives a column, and its factor to SI; else that in SI."""
+    channel = _channel_of(series, name)
+    if channel is None or not channel.declared:
+        return read.unit(name).text, 1.0
+    return channel.declared, channel.factor
+
+
 def _declared_noise(series: Series, read: Record, name: str) -> float:
     """The standard deviation that is declared of a column, in SI; 0 where nothing is said."""
-    channel = series.channels.get(name) or series.inputs.get(name.removeprefix("input "))
+    channel = _channel_of(series, name)
     if channel is None or channel.sigma is None:
         return 0.0
     return float(channel.sigma * factor_of_column(read, name, channel))

@@ -43,7 +43,8 @@ Vector = NDArray[np.float64]
 
 
 def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title: str = "") -> Path:
-    """Draw each measured signal of each series, the model before and after, and the residual.
+    """Draw each measured signal of each series, the model before and after, and the residual, in
+    the unit in which the user has the signal.
 
     Samples that do not count are pale and their time is shaded; a signal that is compared modulo a
     period is drawn on the branch of the measurement. The strip below is measured - simulated before
@@ -55,7 +56,7 @@ def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title:
         what = "a figure of no measured signal cannot be drawn"
         raise OptionError([Problem(what, hint="Compare at least one series.")])
     title = shortened(title, len(comparisons), FIT.most_comparisons, "signals")
-    chosen = comparisons[: FIT.most_comparisons]
+    chosen = [compared.as_shown for compared in comparisons[: FIT.most_comparisons]]
     with styled():
         heights = [[2.3, 1.0, *([1.0] if differ_much(c) else [])] for c in chosen]
         figure, axes = panels([h for each in heights for h in each], title, sharex=False)

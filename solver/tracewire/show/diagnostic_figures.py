@@ -29,6 +29,7 @@ from tracewire.show.style import (
     save,
     shortened,
     styled,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -87,11 +88,13 @@ def _times(fit: Fit, one: Diagnosis) -> Vector:
 
 
 def _draw_time(panel: Axes, one: Diagnosis, t: Vector) -> None:
-    panel.axhspan(-2 * one.noise, 2 * one.noise, color=BAND, linewidth=0, zorder=0.2)
+    unit, factor = one.users_unit
+    noise = one.noise / factor
+    panel.axhspan(-2 * noise, 2 * noise, color=BAND, linewidth=0, zorder=0.2)
     points = dots(len(t)) | {"color": AFTER, "rasterized": len(t) > FIT.residual_points}
-    panel.plot(t, one.residual, **points)
+    panel.plot(t, one.residual / factor, **points)
     panel.axhline(0.0, color=QUIET, linewidth=0.7)
-    panel.set_ylabel(f"residual\n[{one.unit}]" if one.unit else "residual")
+    panel.set_ylabel(with_unit("residual", unit or one.unit).replace(" ", "\n", 1))
     fit_time(panel, t)
     panel.text(
         0.0,

@@ -238,35 +238,32 @@ def _beside(file: str, fit: Fit) -> str:
 
 
 def _signals_table(fit: Fit) -> Table:
-    units = fit.model.flat.units
-    rows = tuple(
-        (
-            m.name,
-            signal,
-            units.get(signal, ""),
-            shown(sigma) if (sigma := m.sigma.get(signal)) is not None else "not declared",
-            _sensor_text(m, signal),
-            shown(m.weights.get(signal, 1.0)),
-        )
-        for m in fit.measured
-        for signal in m.values
-    )
+    units, rows = fit.model.flat.units, []
+    for m in fit.measured:
+        for signal in m.values:
+            unit, factor = fit.model.diagram.users_unit(signal, units.get(signal, ""))
+            sigma = m.sigma.get(signal)
+            noise = "not declared" if sigma is None else shown(sigma / factor)
+            weight = shown(m.weights.get(signal, 1.0))
+            rows.append(
+                (m.name, signal, unit, noise, _sensor_text(m, signal, unit, factor), weight)
+            )
     header = ("series", "signal", "unit", "σ", "how it is compared", "weight")
-    return Table("measured signals", header, rows, frozenset({3, 5}))
+    return Table("measured signals", header, tuple(rows), frozenset({3, 5}))
 
 
-def _sensor_text(series: Measured, signal: str) -> str:
+def _sensor_text(series: Measured, signal: str, unit: str, factor: float) -> str:
+    """What a sensor does to a signal, which the user has in `unit`."""
     sensor, plain = series.sensor(signal), Sensor()
     parts = []
-    units = {"delay": " s", "drift": " 1/s"}
-    for kind in SENSOR_TERMS:
+    for kind, term in SENSOR_TERMS.items():
         value = getattr(sensor, kind)
         if kind in sensor.free:
             parts.append(f"{kind} fitted")
         elif value != getattr(plain, kind):
-            parts.append(f"{kind} {value:g}{units.get(kind, '')}")
+            parts.append(f"{kind} {value / term.factor(factor):g} {term.unit_of(unit)}".rstrip())
     if period := series.periods.get(signal):
-        parts.append(f"modulo {period:g}")
+        parts.append(f"modulo {period / factor:g} {unit}".rstrip())
     return ", ".join(parts) or "as it is"
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from tracewire.fit import Comparison, Diagnosis, Fit, diagnose
+from tracewire.library import SENSOR_TERMS
 from tracewire.show.comparison_figures import root_mean_square
 from tracewire.show.parameter_figures import unknown_width
 from tracewire.show.table import Table, shown
@@ -22,8 +23,8 @@ def fit_tables(fit: Fit) -> tuple[Table, ...]:
 
 
 def fit_table(fit: Fit) -> Table:
-    """Fitted parameters in the units of the file, and numbers of sensors in SI, with standard
-    errors and 95 % intervals."""
+    """Fitted parameters, and numbers of sensors, in the units of the file, with standard errors
+    and 95 % intervals."""
     rows = []
     for name in fit.values:
         unit, factor = unit_of(fit, name)
@@ -58,19 +59,16 @@ def round_by_error(value: float, error: float, least: int = 6) -> str:
 
 def unit_of(fit: Fit, name: str) -> tuple[str, float]:
     """The unit of a fitted value with its factor to SI: of a parameter that of the file, of what a
-    sensor does to its signal that of SI."""
+    sensor does to its signal that of the signal's column."""
     flat = fit.model.flat
     if name in flat.parameters:
         return flat.parameters[name].users_unit
     kind, _, signal = name.partition(".")
-    unit = flat.units.get(signal, "")
-    known = {
-        "offset": unit,
-        "delay": "s",
-        "drift": f"{unit or 1}/s",
-        "quad": unit and f"1/({unit})",
-    }
-    return known.get(kind, ""), 1.0
+    if kind not in SENSOR_TERMS:
+        return "", 1.0
+    term = SENSOR_TERMS[kind]
+    unit, factor = fit.model.diagram.users_unit(signal, flat.units.get(signal, ""))
+    return term.unit_of(unit), term.factor(factor)
 
 
 def _remark(fit: Fit, name: str) -> str:
@@ -117,21 +115,23 @@ def tied_table(fit: Fit) -> Table:
 
 
 def starts_table(fit: Fit) -> Table:
-    """Fitted start values by series and state, in SI."""
+    """Fitted start values by series and state, of a measured one in the unit of its column."""
     units = {state.name: state.unit for state in fit.model.flat.states}
     rows = tuple(
-        (series, state, shown(value), units.get(state, ""))
+        (series, state, shown(value / factor), unit)
         for series, starts in fit.starts.items()
         for state, value in starts.items()
+        for unit, factor in [fit.model.diagram.users_unit(state, units.get(state, ""))]
     )
     return Table("fitted start values", ("series", "state", "start", "unit"), rows, frozenset({2}))
 
 
 def comparison_table(fit: Fit) -> Table:
-    """Root mean square errors before and after, by series and signal, in SI and in sigma."""
+    """Root mean square errors before and after, by series and signal, in the user's unit and in
+    sigma."""
     known = any(c.sigma for c in fit.comparisons)
     header = ("series", "use", "signal", "samples", "unit", "rmse before", "rmse after")
-    rows = tuple(_compared(c, known) for c in fit.comparisons)
+    rows = tuple(_compared(c.as_shown, known) for c in fit.comparisons)
     more = ("before in σ", "after in σ") if known else ()
     numeric = frozenset({3, *range(5, len(header) + len(more))})
     return Table("measured against simulated", (*header, *more), rows, numeric)

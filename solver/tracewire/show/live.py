@@ -254,7 +254,7 @@ def _leave_margins(figure: Figure, top: float = 0.4) -> None:
 
 def _chosen(comparisons: tuple[Comparison, ...]) -> list[Comparison]:
     ordered = sorted(comparisons, key=lambda c: c.use != "train")
-    return ordered[: LIVE.most_signals]
+    return [compared.as_shown for compared in ordered[: LIVE.most_signals]]
 
 
 def _interactive() -> bool:

@@ -132,8 +132,8 @@ def contents(model: Model) -> dict[str, object]:
     }
 
 
-def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, object]:
-    """What is in a measured series; `units` are those of the signals in SI."""
+def series_contents(series: Measured, model: Model) -> dict[str, object]:
+    """What is in a measured series of a model."""
     from tracewire.residual import WINDOW, estimate_noise  # a check without series reads none
 
     noises = {**series.sigma, **series.input_sigma}
@@ -144,8 +144,9 @@ def series_contents(series: Measured, units: Mapping[str, str]) -> dict[str, obj
     estimated = {name: estimate.level for name, estimate in seen.items()}
     how = {name: f", estimated ({estimate.method})" for name, estimate in seen.items()}
     told = [
-        f"{name}: noise of σ = {s:.4g} {units.get(name, '')}".rstrip() + how.get(name, "")
+        f"{name}: noise of σ = {s / factor:.4g} {unit}".rstrip() + how.get(name, "")
         for name, s in {**sigma, **estimated}.items()
+        for unit, factor in [model.diagram.users_unit(name, model.flat.units.get(name, ""))]
     ]
     short = []
     if not enough:

@@ -69,16 +69,14 @@ def plot_free_runs(found: Found, path: Path) -> Path:
     The residuals before and after stand on one scale, in the unit of the user's files.
     """
     order = {"validate": 0, "gate": 1, "train": 2}
-    compared = []
-    for c in sorted(found.curves, key=lambda c: order.get(c.use, 3)):
-        unit, factor = users_unit(found, c.signal)
-        sigma = found.sigma.get(c.signal)
-        compared.append(
-            Comparison(
-                c.series, c.use, c.signal, unit, c.t, c.measured / factor, c.before / factor,
-                c.after / factor, np.isfinite(c.measured), 0.0, sigma and sigma / factor,
-            )
-        )  # fmt: skip
+    compared = [
+        Comparison(
+            c.series, c.use, c.signal, found.units.get(c.signal, ""), c.t, c.measured, c.before,
+            c.after, np.isfinite(c.measured), sigma=found.sigma.get(c.signal),
+            users_unit=users_unit(found, c.signal),
+        )
+        for c in sorted(found.curves, key=lambda c: order.get(c.use, 3))
+    ]  # fmt: skip
     return plot_comparisons(path, compared, "Free runs")
 
 

@@ -38,7 +38,15 @@ from tracewire.show.trace_words import (
     unseen_errors,
     value_words,
 )
-from tracewire.trace import Found, FoundEffect, SearchStep, coefficient_of, signal_of, unit_of_power
+from tracewire.trace import (
+    Found,
+    FoundEffect,
+    SearchStep,
+    coefficient_of,
+    signal_of,
+    unit_of_power,
+    users_unit,
+)
 
 
 def answer_lines(found: Found) -> tuple[str, ...]:
@@ -83,8 +91,9 @@ def remarks_of(found: Found) -> tuple[str, ...]:
 
 def step_lines(found: Found) -> tuple[str, ...]:
     """The way to the answer: noise, declared model, step by step."""
-    noise = ", ".join(f"{name} {sigma:.3g} {found.units.get(name, '')}".rstrip()
-                      for name, sigma in found.sigma.items())  # fmt: skip
+    noise = ", ".join(f"{name} {sigma / factor:.3g} {unit}".rstrip()
+                      for name, sigma in found.sigma.items()
+                      for unit, factor in [users_unit(found, name)])  # fmt: skip
     lines = [f"noise (σ)       {noise}"]
     lines.append(
         f"declared model  s2 = {found.s2_before:.4g}: rms {math.sqrt(found.s2_before):.3g} σ "

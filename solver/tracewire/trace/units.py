@@ -122,7 +122,8 @@ def unit_of(found: Found, effect: FoundEffect, name: str) -> str:
     """The SI unit of a parameter of an effect; '' where it has none, or where it is not known."""
     if not effect.block:
         signal = effect.place.partition(".")[2]
-        return found.units.get(f"{name}.{signal}", "") or _unit_of_sensor(found, signal, name)
+        own = found.units.get(f"{name}.{signal}", "")
+        return own or SENSOR_TERMS[name].unit_of(found.units.get(signal, ""))
     own = found.units.get(f"{effect.block}.{name}", "")
     return own or unit_of_effect(found, effect.name, effect.place, name)
 
@@ -132,18 +133,9 @@ def unit_of_power(found: Found, power: Power) -> str:
     if found.units.get(power.coefficient):
         return found.units[power.coefficient]
     if power.name.startswith("sensor_"):
-        return _unit_of_sensor(found, power.place.partition(".")[2], coefficient_of(power))
+        signal = power.place.partition(".")[2]
+        return SENSOR_TERMS[coefficient_of(power)].unit_of(found.units.get(signal, ""))
     return unit_of_effect(found, power.name, power.place, coefficient_of(power))
-
-
-def _unit_of_sensor(found: Found, signal: str, term: str) -> str:
-    """The SI unit of an offset, gain ... of a sensor; '' where that of its signal is not known."""
-    unit = found.units.get(signal, "")
-    text = SENSOR_TERMS[term].unit
-    if "{}" in text and not unit:
-        return ""
-    inner = text.startswith("1/") and ("/" in unit or " " in unit)
-    return text.format(f"({unit})" if inner else unit)
 
 
 def coefficient_of(power: Power) -> str:
@@ -164,24 +156,10 @@ def known_units(found: Found) -> dict[str, str]:
 
 
 def users_unit(found: Found, signal: str) -> tuple[str, float]:
-    """The unit in which the user's files have a signal, and its factor to SI: `deg`, pi/180.
-
-    Where the series differ, or the diagram names no unit, it is that of SI.
-    """
+    """The unit in which a user has a signal, and its factor to SI (`Diagram.users_unit`)."""
     if signal in found.users_units:
         return found.users_units[signal]
-    return unit_in_files(found.original, found.units, signal)
-
-
-def unit_in_files(diagram: Diagram, units: Mapping[str, str], signal: str) -> tuple[str, float]:
-    """The same of a signal or an input of a diagram, with the SI units of signals."""
-    series = [{**s.inputs, **s.channels} for s in diagram.measured.values()]
-    channels = [known[signal] for known in series if signal in known]
-    declared = {(c.declared, c.factor) for c in channels if c.declared}
-    if len(declared) == 1 and all(c.declared for c in channels):
-        ((unit, factor),) = declared
-        return str(unit), factor
-    return units.get(signal, ""), 1.0
+    return found.original.users_unit(signal, found.units.get(signal, ""))
 
 
 # --- exponents ----------------------------------------------------------------------------------

@@ -281,7 +281,9 @@ class Subject:
         if preset:  # free parameters, and those that follow them, begin with it
             series = {name: replace(one, preset=preset) for name, one in series.items()}
             model = replace(model, diagram=replace(model.diagram, measured=series))
-        return fit(model, method=str(self.conditions.study.get("method", "fminsearch")), **given)
+        if "method" in self.conditions.study:
+            given["method"] = str(self.conditions.study["method"])
+        return fit(model, **given)
 
 
 def _has(t: Vector, times: Vector) -> bool:

@@ -31,7 +31,6 @@ from tracewire.trace.experiment.rig import Design, Rig, rig_of
 from tracewire.trace.experiment.words import alias_hint, decision, none_within
 from tracewire.trace.found import Experiment
 from tracewire.trace.trials.trial import TraceProblem, Trial
-from tracewire.trace.units import unit_in_files
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -91,7 +90,7 @@ def design_experiment(
     )
 
     def units(signal: str) -> tuple[str, float]:
-        return unit_in_files(problem.declared.diagram, one.model.flat.units, signal)
+        return problem.declared.diagram.users_unit(signal, one.model.flat.units.get(signal, ""))
 
     words = decision(rig, best, separations[best], name, rival, units)
     return Experiment(name, rival, rig.as_parameters(best), separations[best], words, rows)
