@@ -67,7 +67,7 @@ barrier = Block(
 
 overflow = Block(
     name="overflow",
-    doc="What runs over above a level, in proportion to the excess.",
+    doc="An outflow above a level, in proportion to the excess.",
     inputs=(Input("of", doc="the level: m, or what is stored"),),
     parameters=(
         Parameter("k", doc="of what runs over to the excess: 1/s, or A/V", low=0.0),

@@ -23,7 +23,7 @@ CATCHES = (
 
 drive_gain = Block(
     name="drive_gain",
-    doc="What the drive is larger than recorded, in proportion to it.",
+    doc="A drive that is larger than its record by a share: adds that share.",
     inputs=(OF,),
     parameters=(Parameter("gain", doc="the share that is missing; negative: too much"),),
     outputs=(Output("y", "gain*of", doc="is added to the drive"),),
@@ -32,7 +32,7 @@ drive_gain = Block(
 
 drive_lag = Block(
     name="drive_lag",
-    doc="What a drive that follows its record late lacks: a lag of first order, less the record.",
+    doc="A drive with a lag of first order: adds the lagged record less the record.",
     inputs=(OF,),
     parameters=(Parameter("tau", "s", "the time constant", low=0.0),),
     states=(State("w", "(of - w)/(tau if tau > 0 else 1)", "0"),),
@@ -50,7 +50,7 @@ drive_lag = Block(
 
 drive_delay = Block(
     name="drive_delay",
-    doc="What a drive that acts after a dead time lacks: a delay, less the record.",
+    doc="A drive with a dead time: adds the record of that time ago less the record.",
     inputs=(OF,),
     parameters=(Parameter("tau", "s", "the dead time", low=0.0),),
     outputs=(Output("y", "shifted(of, tau) - of", doc="is added to the drive"),),
@@ -66,7 +66,7 @@ drive_delay = Block(
 
 drive_saturation = Block(
     name="drive_saturation",
-    doc="What a drive lacks that cannot go beyond a limit.",
+    doc="A drive with a limit on either side: takes away what the record has beyond it.",
     inputs=(OF,),
     parameters=(
         Parameter(
@@ -93,7 +93,7 @@ drive_saturation = Block(
 
 drive_dead_zone = Block(
     name="drive_dead_zone",
-    doc="What a drive lacks that does nothing near zero.",
+    doc="A drive with a dead zone: takes the record away inside it, and the zone beyond it.",
     inputs=(OF,),
     parameters=(
         Parameter("share", doc="of the zone that is lost; 1: all", low=0.0, high=1.0),
@@ -118,7 +118,7 @@ drive_dead_zone = Block(
 
 drive_quantiser = Block(
     name="drive_quantiser",
-    doc="What a drive lacks that goes in steps: the nearest step, less the record.",
+    doc="A drive that goes in steps: adds the nearest step less the record.",
     inputs=(OF,),
     parameters=(
         Parameter("share", doc="1: it goes in steps", low=0.0, high=1.0),
@@ -137,7 +137,7 @@ drive_quantiser = Block(
 
 drive_2nd_harm = Block(
     name="drive_2nd_harm",
-    doc="A drive that has a share of twice its frequency.",
+    doc="A sine drive with a share of twice its frequency: adds that share.",
     parameters=(SHARE, PHASE, *TONE),
     outputs=(
         Output("y", "share*size*sin(2*(2*pi*t/period + start) + phase)", doc="added to the drive"),
@@ -148,7 +148,7 @@ drive_2nd_harm = Block(
 
 drive_3rd_harm = Block(
     name="drive_3rd_harm",
-    doc="A drive that has a share of three times its frequency.",
+    doc="A sine drive with a share of three times its frequency: adds that share.",
     parameters=(SHARE, PHASE, *TONE),
     outputs=(
         Output("y", "share*size*sin(3*(2*pi*t/period + start) + phase)", doc="added to the drive"),

@@ -57,7 +57,7 @@ asymmetric_coulomb = Block(
 
 asym_coulomb = Block(
     name="asym_coulomb",
-    doc="What dry friction has more in one direction than in the other, of the same sign in both.",
+    doc="Dry friction that differs between the directions: half the difference.",
     inputs=(RATE,),
     parameters=(
         Parameter("level", doc="half the difference of the two levels: N m, or N"),
@@ -78,7 +78,7 @@ asym_coulomb = Block(
 
 stribeck = Block(
     name="stribeck",
-    doc="What dry friction has more near rest than at high rates.",
+    doc="Dry friction that is higher near rest, beside that at high rates: the Stribeck curve.",
     inputs=(RATE,),
     parameters=(
         LEVEL,

@@ -113,7 +113,7 @@ smoothed_stribeck = Block(
 
 asym_viscous = Block(
     name="asym_viscous",
-    doc="What viscous friction has more in one direction than in the other.",
+    doc="Viscous friction that differs between the directions: half the difference.",
     inputs=(RATE,),
     parameters=(
         Parameter("c", doc="half the difference of the coefficients: N m s/rad, or N s/m"),

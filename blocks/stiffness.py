@@ -52,7 +52,7 @@ cubic_stiffness = Block(
 
 asym_stiffness = Block(
     name="asym_stiffness",
-    doc="What a spring has more on one side than on the other.",
+    doc="A spring that differs between the sides: half the difference.",
     inputs=(OF,),
     parameters=(Parameter("k", doc="half the difference of the stiffnesses: N m/rad, or N/m"),),
     outputs=(Output("force", "-k*abs(of)", doc="acts on the body"),),
@@ -63,7 +63,7 @@ asym_stiffness = Block(
 
 backlash = Block(
     name="backlash",
-    doc="What takes a spring of the same stiffness away inside of a gap.",
+    doc="A gap in a spring of the same stiffness: takes the spring away inside it.",
     inputs=(OF,),
     parameters=(
         Parameter("k", doc="that of the spring: N m/rad, or N/m", low=0.0),
