@@ -289,6 +289,16 @@ def test_a_sweep_has_the_shape_of_its_grid() -> None:
         found["max"]
 
 
+def test_a_number_that_a_run_does_not_have_costs_no_other_number() -> None:
+    found = sweep(
+        made(OSCILLATOR), {"k": [0.01, 9.0]}, ["max(x)", "period(x)"], parameters={"c": 0.0}
+    )
+    assert found["max(x)"] == pytest.approx([1.0, 1.0], abs=1e-3)
+    assert found["period(x)"] == pytest.approx([np.nan, 2 * np.pi / 3], nan_ok=True, rel=1e-3)
+    ((number, why),) = found.errors.items()
+    assert number == (0,) and "A period needs two" in why
+
+
 def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tracewire.solve.progress.PAUSE.told_every", 0.0)
     file, grid = tmp_path / "sweep.npz", {"k": np.linspace(1, 4, 12)}

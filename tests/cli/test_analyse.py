@@ -258,7 +258,7 @@ def test_values_that_fail_are_counted(call: Any, tmp_path: Path) -> None:
     )
     told = call("sweep", file, "--over", "p=1:9:2", "--keep", "end(x)")
     assert told.code == 0
-    assert "1 points failed; the first of them: " in told.out
+    assert "1 point failed; the first of them, at p = 9: " in told.out
     told = call("sweep", file, "--over", "p=8:9:2", "--keep", "end(x)")
     assert told.code == 1
     assert "'x' is not finite" in told.err

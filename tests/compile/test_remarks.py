@@ -8,7 +8,7 @@ import pytest
 from solve.models import made
 from tracewire.compile import compile
 from tracewire.compile.remarks import remarks_of
-from tracewire.diagram import read
+from tracewire.diagram import read, read_text
 from tracewire.shipped import shipped
 from tracewire.solve import parameter_values
 
@@ -88,6 +88,23 @@ SHIPPED = [
     for file in sorted((shipped("diagrams") / folder).rglob("*.yaml"))
     if "\nblocks:" in file.read_text(encoding="utf-8")
 ]
+
+
+def test_a_free_parameter_that_nothing_reads_is_told() -> None:
+    text = """
+    parameters:
+      k: {value: 1, fit: [0, 9]}
+      own: {value: 2, fit: [0, 9]}
+      dead: {value: 3, fit: [0, 9]}
+      half: own/2
+    blocks:
+      x: {type: integrator, of: v, start: half}
+      v: {type: gain, of: x, k: -k}
+    """
+    model = compile(read_text(text))
+    assert remarks_of(model, parameter_values(model, {})) == [
+        "'dead' is free in a fit, and nothing reads it: use it, or remove it"
+    ]
 
 
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: f"{file.parent.name}-{file.stem}")

@@ -12,6 +12,7 @@ from tracewire.diagram import (
     Value,
     difference,
     find_parameter,
+    read,
     read_text,
     write,
 )
@@ -330,14 +331,24 @@ def test_write_leaves_other_files_alone(tmp_path: Path) -> None:
         write(diagram, tmp_path / "nowhere" / "c.yaml")
 
 
-def test_write_elsewhere_checks_the_files_that_are_named(tmp_path: Path) -> None:
+def test_in_another_folder_measured_files_have_the_path_from_there(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("")
     (tmp_path / "sub").mkdir()
     diagram = made(SERIES, tmp_path / "d.yaml")
-    with pytest.raises(DiagramError, match=r"unknown file 'run\.csv'"):
+    moved = write(diagram, tmp_path / "sub" / "d.yaml")
+    assert "file: ../run.csv" in moved.read_text()
+    series = read(moved).measured["one"]
+    assert series.file.samefile(tmp_path / "run.csv")
+    assert write(diagram, tmp_path / "e.yaml").read_text() == diagram.text
+
+
+def test_in_another_folder_an_included_diagram_must_be_found(tmp_path: Path) -> None:
+    (tmp_path / "parts.yaml").write_text("title: Parts\n")
+    (tmp_path / "sub").mkdir()
+    diagram = made("include: parts.yaml\n" + PENDULUM, tmp_path / "d.yaml")
+    with pytest.raises(DiagramError, match=r"parts\.yaml"):
         write(diagram, tmp_path / "sub" / "d.yaml")
     assert not (tmp_path / "sub" / "d.yaml").exists()
-    assert write(diagram, tmp_path / "e.yaml").exists()
 
 
 def test_equal_texts_do_not_differ() -> None:

@@ -71,6 +71,14 @@ def test_differences_modulo_a_period_follow_each_other(
     assert wrap_to_period(np.mod(off, TURN), TURN) == pytest.approx(off - turns * TURN, abs=1e-9)
 
 
+@given(st.integers(0, 59), st.floats(-20, 20))
+def test_the_shortest_way_is_that_of_the_first_sample_that_counts(first: int, slope: float) -> None:
+    """A criterion begins there; a table of errors that began earlier told turns that it had not."""
+    off = slope * np.linspace(0, 1, 60)
+    counted = off - TURN * np.round(off[first] / TURN)
+    assert wrap_to_period(np.mod(off, TURN), TURN, first) == pytest.approx(counted, abs=1e-9)
+
+
 def test_a_sample_that_is_not_finite_breaks_no_differences() -> None:
     off = np.array([0.1, np.nan, 0.2 + TURN, 0.3])
     assert wrap_to_period(off, TURN) == pytest.approx([0.1, np.nan, 0.2, 0.3], nan_ok=True)

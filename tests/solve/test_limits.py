@@ -1,10 +1,11 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 import pytest
 from solve.models import BALL, LIMITS, made, one, run
-from tracewire.errors import SimulationError
+from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import Limits, simulate
 
 
@@ -54,6 +55,15 @@ def test_a_recorded_signal_that_is_not_finite_is_refused() -> None:
 def test_the_step_limit() -> None:
     with pytest.raises(SimulationError, match=r"t = .* s: more than 10 steps.*Loosen rtol"):
         run(one("cos(50*t)"), limits=Limits(steps=10))
+
+
+@pytest.mark.parametrize(
+    "given", [{"method": "rk4", "step": 1e-9}, {"limits": Limits(max_step=1e-9)}]
+)
+def test_more_steps_than_a_run_may_take_are_refused_before_the_first(given: Any) -> None:
+    said = r"1 s in steps of at most 1e-09 s are 1e\+09 steps\. A run takes at most 5e\+07: take"
+    with pytest.raises(OptionError, match=said):
+        simulate(made(one("cos(t)")), **given)
 
 
 def test_the_limit_of_wall_time() -> None:

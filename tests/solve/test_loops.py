@@ -133,3 +133,28 @@ blocks:
 """
     with pytest.raises(SimulationError, match=r"block 'y': no consistent mode at t = 0 s"):
         run(text)
+
+
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        (
+            "k*y + x",
+            r"block 'y': .*not finite .*algebraic loop y -> y, .*gain round it is 1",
+        ),
+        ("y**2 + 1", r"recorded signal 'y' is not finite .*algebraic loop y -> y.*`guess:`"),
+    ],
+)
+def test_a_loop_that_has_no_solution_says_so(formula: str, said: str) -> None:
+    """The gain of the first one is a parameter, so that only a run can tell that it is 1."""
+    rate = "y" if "k" in formula else "x"
+    text = f"""
+span: [0, 1]
+record: [y]
+parameters: {{k: 1}}
+blocks:
+  x: {{type: integrator, of: {rate}, start: 1}}
+  y: {{type: expression, formula: {formula}}}
+"""
+    with pytest.raises(SimulationError, match=said):
+        run(text)

@@ -24,13 +24,20 @@ from tracewire.analyse.quantities import (
     is_of_run,
     measure,
 )
-from tracewire.analyse.work import work_through
+from tracewire.analyse.work import IncompleteRow, work_through
 from tracewire.compile import Model
 from tracewire.diagram import quantity_problems, row_ends
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.formula import Expression, parse_quantity
 from tracewire.result import Result
-from tracewire.solve import Options, ProgressCallback, StopFlag, refuse_unknown_options, with_row
+from tracewire.solve import (
+    Interrupted,
+    Options,
+    ProgressCallback,
+    StopFlag,
+    refuse_unknown_options,
+    with_row,
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -40,8 +47,9 @@ Matrix = NDArray[np.float64]
 class Sweep(Result):
     """Outputs over a grid: `sweep["max(x)"]` has the shape of the grid, in the order of its axes.
 
-    `grid` holds the values of each axis in SI, `values` the outputs by name, NaN where a run
-    failed; `errors` says why, by the indices of the point. `units` are the SI units of the axes.
+    `grid` holds the values of each axis in SI, `values` the outputs by name, NaN where a run failed
+    or has no such number; `errors` says why, by the indices of the point. `units` are the SI units
+    of the axes.
     """
 
     title: str
@@ -123,14 +131,24 @@ class _Point:
     since: float | None
     options: Options
 
-    def __call__(self, number: int, stop_flag: StopFlag) -> Vector:
+    def __call__(self, number: int, stop_flag: StopFlag) -> Vector | IncompleteRow:
         shape = tuple(len(values) for values in self.axes.values())
         place = np.unravel_index(number, shape)
         here = {n: float(v[i]) for (n, v), i in zip(self.axes.items(), place, strict=True)}
         given = with_row(self.model, self.options, here)
         subject = Subject(Recorder(self.model), Conditions(given, self.since))
         ask(self.measures, subject)
-        return np.array([measure(quantity, subject) for quantity in self.measures])
+        row, missing = np.full(len(self.measures), np.nan), list[TracewireError]()
+        for n, quantity in enumerate(self.measures):
+            try:
+                row[n] = measure(quantity, subject)
+            except Interrupted:
+                raise
+            except TracewireError as error:
+                missing.append(error)
+        if missing and len(missing) == len(row):
+            raise missing[0]
+        return IncompleteRow(row, str(missing[0])) if missing else row
 
 
 def _quantity(model: Model, output: str) -> Expression:

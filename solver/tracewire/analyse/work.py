@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import Executor
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,16 @@ from tracewire.solve import Interrupted, PartProgress, ProgressCallback, StopFla
 Vector = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class IncompleteRow:
+    """A row of which some numbers could not be had, NaN there, and why the first one could not."""
+
+    row: Vector
+    error: str
+
+
 def work_through(
-    point: Callable[[int, StopFlag], Vector],
+    point: Callable[[int, StopFlag], Vector | IncompleteRow],
     partial: Partial,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
@@ -31,13 +40,15 @@ def work_through(
     missing = [(number,) for number in np.flatnonzero(~partial.done).tolist()]
     first: list[TracewireError] = []
 
-    def take(arguments: tuple[Any, ...], result: Vector | TracewireError) -> None:
+    def take(arguments: tuple[Any, ...], result: Vector | IncompleteRow | TracewireError) -> None:
         (number,) = arguments
         if isinstance(result, Interrupted):
             return
         if isinstance(result, TracewireError):
             first.append(result)
             partial.put(number, None, str(result))
+        elif isinstance(result, IncompleteRow):
+            partial.put(number, result.row, result.error)
         else:
             partial.put(number, result)
 

@@ -105,11 +105,11 @@ def check_targets(
 
 
 def check_home(diagram: Diagram, output: str | None) -> None:
-    """Refuse, before the work, a folder from which the diagram's relative files are not found."""
+    """Refuse, before the work, a folder from which files of the diagram are not found."""
     if output is not None and not output.endswith(".patch"):
-        from tracewire.diagram import read_text
+        from tracewire.diagram import text_at
 
-        read_text(diagram.text, Path(output), library=diagram.library)
+        text_at(diagram, Path(output))
 
 
 def write_report(

@@ -80,7 +80,7 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
         if even is not None:
             name, first, last, count, unit = even.groups()
             given = [first, last]
-        elif listed is not None:
+        elif listed is not None and not listed[3].startswith("-"):  # 0-40 is no unit of -40
             name, numbers, unit = listed.groups()
             given, count = numbers.split(","), "1"
         elif EVEN.fullmatch(text):

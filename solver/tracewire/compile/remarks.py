@@ -4,6 +4,7 @@ numbers in SI beside a signal that is shown in degrees."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
 
 from tracewire.compile.flat import Flat
 from tracewire.compile.limits import REMARK
@@ -29,9 +30,31 @@ def remarks_of(model: Model, parameters: Values) -> list[str]:
     A block of a spring or a damper that is wired so that it pushes the body on; a nonlinear
     function of a dry friction, which has a blend of the values on both sides while that sticks; a
     number without a unit that is large or tiny in the unit, not of SI, in which its signal is
-    shown.
+    shown; a parameter that a fit may change, and that nothing reads.
     """
-    return list(_bare(model)) + _of_forces(model, parameters)
+    return [*_bare(model), *_unread(model.flat), *_of_forces(model, parameters)]
+
+
+def _unread(flat: Flat) -> Iterator[str]:
+    """Parameters that a fit may change and that stand in no formula."""
+    free = [name for name, parameter in flat.parameters.items() if parameter.fit is not None]
+    read = set(_names_in(flat)) if free else set()
+    for name in free:
+        if name not in read:
+            yield f"'{name}' is free in a fit, and nothing reads it: use it, or remove it"
+
+
+def _names_in(value: object) -> Iterator[str]:
+    """The names in all formulas of a record."""
+    if isinstance(value, Name):
+        yield value.name
+    elif isinstance(value, Mapping):
+        value = tuple(value.values())
+    elif is_dataclass(value):
+        value = tuple(getattr(value, field.name) for field in fields(value))
+    if isinstance(value, tuple):
+        for part in value:
+            yield from _names_in(part)
 
 
 def _bare(model: Model) -> Iterator[str]:

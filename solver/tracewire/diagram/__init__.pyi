@@ -62,7 +62,7 @@ from .reader import read, read_readable, read_readable_text, read_text
 from .rename import renamed
 from .rewire import rewired
 from .schema import schema_of, schema_text
-from .writer import write, write_out
+from .writer import text_at, write, write_out
 from .yaml_text import mapping_text, quote
 
 __all__ = [
@@ -141,6 +141,7 @@ __all__ = [
     "split_index",
     "state_names",
     "states",
+    "text_at",
     "who_has",
     "with_addend",
     "with_modeline",

@@ -145,6 +145,20 @@ def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:
     return reread(diagram, changes)
 
 
+def text_from(diagram: Diagram, folder: Path) -> str:
+    """The text of a diagram as a file in another folder has it: the files of its own series as
+    seen from there. A file that is not there keeps its path."""
+    section = SourceMap(diagram).own.values.get(SECTION)
+    changes = []
+    for name, _, series in section if isinstance(section, Entries) else ():
+        node = series.values.get("file") if isinstance(series, Entries) else None
+        file = diagram.measured[name].file if name in diagram.measured else None
+        if node is not None and file is not None and file.is_file():
+            seen = Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+            changes.append(replace_node(node, quote(seen)))
+    return apply_edits(diagram.text, changes)
+
+
 def path_text(file: Path, folder: Path) -> str:
     """The path of a file as a diagram in this folder names it: relative where it lies below."""
     full, base = Path(os.path.abspath(file)), Path(os.path.abspath(folder))

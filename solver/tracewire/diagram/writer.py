@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
-from tracewire.diagram.edit_series import path_text
+from tracewire.diagram.edit_series import path_text, text_from
 from tracewire.diagram.files import absent_series
 from tracewire.diagram.modeline import moved_modeline
 from tracewire.diagram.packages import Packages
@@ -22,11 +22,11 @@ from tracewire.files import write_file
 
 
 def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
-    """Write the diagram's text to a file, and return its path. In another folder the line that
-    names its schema to an editor gets the path from there.
+    """Write the diagram's text to a file, and return its path. In another folder measured files,
+    and the schema that its first line names to an editor, get the path from there.
 
     Raises OptionError where another file is there already and `overwrite` is not said, or the file
-    cannot be written; DiagramError where files that the diagram names are not found from there.
+    cannot be written; DiagramError where diagrams that it includes or extends are not found there.
     """
     target = Path(path)
     try:
@@ -34,18 +34,26 @@ def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
         if target.exists() and not own and not overwrite:
             hint = "Choose another name, or say that it may be overwritten."
             raise OptionError.one("there is a file of this name", Location(str(target)), hint=hint)
-        if target.resolve().parent != diagram.file.resolve().parent:
-            moved = read_text(diagram.text, target, library=diagram.library)
-            there = absent_series(diagram)
-            lost = [p for name, p in absent_series(moved).items() if name not in there]
-            if lost:
-                raise DiagramError(lost)
-        write_file(target, moved_modeline(diagram.text, diagram.file, target))
+        text = text_at(diagram, target)
+        write_file(target, moved_modeline(text, diagram.file, target))
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         what = f"the file cannot be written: {reason}"
         raise OptionError.one(what, Location(str(target)), hint="Check its folder.") from None
     return target
+
+
+def text_at(diagram: Diagram, target: Path) -> str:
+    """The text of a diagram as another file has it. Raises DiagramError: a file that the diagram
+    names is not found from there."""
+    if target.resolve().parent == diagram.file.resolve().parent:
+        return diagram.text
+    text = text_from(diagram, target.parent)
+    there = absent_series(diagram)
+    moved = read_text(text, target, library=diagram.library)
+    if lost := [p for name, p in absent_series(moved).items() if name not in there]:
+        raise DiagramError(lost)
+    return text
 
 
 def write_out(diagram: Diagram) -> str:

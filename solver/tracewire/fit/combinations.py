@@ -129,10 +129,9 @@ def _alone(flat: FlatDirection, columns: ParameterColumns) -> str:
     many = np.flatnonzero(flat.effects > UNCERTAINTY.part).tolist()
     others = [columns.names[j] for j in many if j != flat.fixed]
     name, together = columns.names[flat.fixed], " together" if len(others) > 1 else ""
-    return (
-        f"{name} cannot be told from {_listed(others)}{together}: "
-        f"changing {_changes(flat, columns)} leaves the residual as it is; fix {name}"
-    )
+    what = f"cannot be told from {_listed(others)}{together}" if others else "is not determined"
+    changed = f"changing {_changes(flat, columns)} leaves the residual as it is"
+    return f"{name} {what}: {changed}; fix {name}"
 
 
 def _conserved_quantity(

@@ -82,8 +82,8 @@ def compare_series(
             unit=units.get(signal, ""),
             t=m.t,
             measured=values,
-            before=_on_turns(values, before[m.name][:, n], m.periods.get(signal, 0.0)),
-            after=_on_turns(values, after[m.name][:, n], m.periods.get(signal, 0.0)),
+            before=_on_turns(m, signal, before[m.name][:, n]),
+            after=_on_turns(m, signal, after[m.name][:, n]),
             counts=m.t >= m.counts_from,
             period=m.periods.get(signal, 0.0),
             sigma=m.sigma.get(signal),
@@ -94,6 +94,11 @@ def compare_series(
     )
 
 
-def _on_turns(measured: Vector, shown: Vector, period: float) -> Vector:
-    """What a model shows (N,) on the turns of what was measured; a period of 0 is none."""
-    return measured - wrap_to_period(measured - shown, period) if period > 0 else shown
+def _on_turns(series: Measured, signal: str, shown: Vector) -> Vector:
+    """What a model shows of a signal (N,) on the turns of what was measured, those of the first
+    sample that counts."""
+    period = series.periods.get(signal, 0.0)
+    if period <= 0:
+        return shown
+    measured, first = series.values[signal], int(np.argmax(series.t >= series.counts_from))
+    return measured - wrap_to_period(measured - shown, period, first)

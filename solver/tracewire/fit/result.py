@@ -55,8 +55,10 @@ class Comparison:
         )
 
     def residual(self, simulated: Vector) -> Vector:
-        """Measured - simulated (N,) in SI, of a periodic signal modulo its period."""
-        return wrap_to_period(self.measured - simulated, self.period)
+        """Measured - simulated (N,) in SI, of a periodic signal modulo its period: that goes the
+        shortest way around at the first sample that counts."""
+        first = int(np.argmax(self.counts))
+        return wrap_to_period(self.measured - simulated, self.period, first)
 
     @property
     def residual_before(self) -> Vector:

@@ -275,9 +275,9 @@ def subtract_measured(
     return off
 
 
-def wrap_to_period(off: Vector, period: float) -> Vector:
-    """Differences (N,) of one run modulo a period, 0 is none: the first one goes the shortest way
-    around, and each other one is as near as can be to the one before.
+def wrap_to_period(off: Vector, period: float, first: int = 0) -> Vector:
+    """Differences (N,) of one run modulo a period, 0 is none: the one at `first` goes the shortest
+    way around, and each other one is as near as can be to the one beside it.
 
     The shortest way alone would let a run that falls behind by whole turns look right every turn. A
     sample that is not finite stays so.
@@ -288,4 +288,6 @@ def wrap_to_period(off: Vector, period: float) -> Vector:
     near = off[known] - period * np.round(off[known] / period)
     found = off.copy()
     found[known] = np.unwrap(near, period=period)
+    if known[first:].any():  # the first known one from there on
+        found[known] -= period * np.round(found[first + int(np.argmax(known[first:]))] / period)
     return found

@@ -37,7 +37,7 @@ from tracewire.show.table import Table, shown
 ERRORS = (
     "The standard error says how much a value would scatter if the same experiment were repeated "
     "with new noise; the 95 % interval would hold the true value in 95 of 100 such experiments, "
-    "if the diagram is right. Values are in SI."
+    "if the diagram is right."
 )
 LEFT = (
     "If the diagram is right, what is left is noise: as large as that of the sensor, white (no "

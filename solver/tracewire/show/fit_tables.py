@@ -205,14 +205,17 @@ def _with_use(series: str, use: str) -> str:
 def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
     """What the residual after the fit is like, by series and signal."""
     words = [sentence(f"{_with_use(d.series, d.use)}, {d.signal}: {d.words}") for d in found]
+    # a body that sticks or hits a stop once more: no slope shows the way to such a motion
+    jumps = any(not mode.timed for mode in fit.model.modes)
     if (
         fit.method in LOCAL
         and fit.model.states
-        and any(d.is_missing and d.is_out_of_step for d in found)
+        and any(d.is_missing and (d.is_out_of_step or jumps) for d in found)
     ):
         words.append(
             f"Or {fit.method} has ended in a minimum that is not the lowest: it takes the nearest. "
-            "Fit once more with --method growing_windows; where that leaves as much, trace."
+            f"Fit once more with --method {'multiple_shooting' if jumps else 'growing_windows'}; "
+            "where that leaves as much, trace."
         )
     return tuple(words)
 

@@ -58,12 +58,13 @@ def pairs(values: Iterable[complex]) -> list[list[float]]:
     return [[float(value.real), float(value.imag)] for value in values]
 
 
-def failed_lines(errors: Mapping[Any, str]) -> list[str]:
-    """What to say of points that failed: how many, and why the first did."""
+def failed_lines(errors: Mapping[Any, str], first_at: str = "") -> list[str]:
+    """What to say of points that failed: how many, where the first did, and why."""
     if not errors:
         return []
+    points = "1 point failed" if len(errors) == 1 else f"{len(errors)} points failed"
     first = next(iter(errors.values())).split("\n")[0]
-    return [f"{len(errors)} points failed; the first of them: {first}"]
+    return [f"{points}; the first of them{first_at and f', at {first_at}'}: {first}"]
 
 
 # --- steady states and linear models ------------------------------------------------------------
@@ -362,7 +363,9 @@ def _sweep_parts(found: Sweep) -> list[Part]:
         for name, v in found.values.items()
     )
     table = Table("over the grid", ("number", "min", "max"), rows, frozenset({1, 2}))
-    return [table, _sweep_line(found), *failed_lines(found.errors)]
+    first = zip(found.grid.items(), next(iter(found.errors), ()), strict=False)
+    at = " and ".join(f"{name} = {values[i]:.6g}" for (name, values), i in first)
+    return [table, _sweep_line(found), *failed_lines(found.errors, at)]
 
 
 PRESENTATIONS = {

@@ -179,6 +179,7 @@ def _no_step(model: Model, arrays: Arrays, status: int) -> SimulationError:
             name, value = not_finite(model, flow, end, trial.x_end)
         what = f"'{name}' is not finite ({value})" if name else "the rates are not finite"
         hint = "Look for a division by zero, the root of a negative number, or a run-away."
+        hint = hint_of_loop(model, name) or hint
         return stopped(model, t, x, what, hint, name)
     name = strictest(model, arrays)
     smallest = max(1e-15 * progress.now[LENGTH], 16 * float(np.spacing(abs(t))))
@@ -187,6 +188,21 @@ def _no_step(model: Model, arrays: Arrays, status: int) -> SimulationError:
     other = "" if progress.ints[CURRENT] == ROSENBROCK else "; try the method 'rosenbrock'"
     hint = f"{hint}{other}."
     return stopped(model, t, x, what, hint, name)
+
+
+def hint_of_loop(model: Model, name: str) -> str:
+    """What to do about a signal that is not finite where it is in an algebraic loop; '' elsewhere.
+
+    Newton's method divides by 1 less the gain round the loop.
+    """
+    for loop in model.flat.loops:
+        if name in loop.names:
+            return (
+                f"It is in the algebraic loop {loop.text}, which has no solution there, as where "
+                "the gain round it is 1: change that, give a `guess:` near a solution, or break "
+                "the loop with a state, such as an integrator."
+            )
+    return ""
 
 
 def strictest(model: Model, arrays: Arrays) -> str:

@@ -30,7 +30,13 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.flow import EVALUATIONS, FUNCTIONS
 from tracewire.solve.core_library import library
 from tracewire.solve.event_log import Log
-from tracewire.solve.failures import failure, place_of, too_long, too_many_events
+from tracewire.solve.failures import (
+    failure,
+    hint_of_loop,
+    place_of,
+    too_long,
+    too_many_events,
+)
 from tracewire.solve.history import grow
 from tracewire.solve.interrupt import Interrupted, StopFlag, until_interrupted
 from tracewire.solve.limits import PAUSE
@@ -279,5 +285,6 @@ def refuse_nan(model: Model, samples: Matrix, t: Vector) -> None:
         if len(bad):
             when, value = t[bad[0]], samples[bad[0], n]
             what = f"the recorded signal '{name}' is not finite ({value}) at t = {when:.9g} s"
-            hint = "Look for a division by zero or the root of a negative number in it."
+            hint = hint_of_loop(model, name)
+            hint = hint or "Look for a division by zero or the root of a negative number in it."
             raise SimulationError([Problem(what, place_of(model, name), (), hint)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
@@ -155,6 +156,7 @@ def _problem(
     longest = longest_step(model, values, limits)
     rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
+    _refuse_short_steps(end - begin, min(longest, step or math.inf), limits)
     past = past_of(model, given.get("past") or {})
     return InitialValueProblem(
         model=model,
@@ -170,6 +172,15 @@ def _problem(
         sampled=sampled,
         **_numbers(model, given, values, asked, past, tables),
     )
+
+
+def _refuse_short_steps(length: float, longest: float, limits: Limits) -> None:
+    """Raises OptionError: a run that would take more steps than it may, however it goes."""
+    count = length / longest
+    if count > limits.steps:
+        what = f"{length:g} s in steps of at most {longest:g} s are {count:.2g} steps"
+        hint = f"A run takes at most {limits.steps:.2g}: take longer steps (step, max_step)."
+        raise OptionError.one(what, hint=hint)
 
 
 def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:

@@ -5,7 +5,13 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read_text
+from tracewire.residual import Measured
+from tracewire.solve import simulate
+from tracewire.trace import trace
 from tracewire.trace.choose import exchanges
 from tracewire.trace.options import TraceOptions
 
@@ -56,3 +62,37 @@ def test_an_effect_without_which_nothing_is_known_comes_last(
 ) -> None:
     (first, _) = exchanged(monkeypatch, 0, [model(COULOMB, rss=90.0)])
     assert first.startswith(DRAG)
+
+
+DOOR = """
+span: [0, 12]
+every: 0.02
+record: [x]
+parameters:
+  k: {value: 60.0878, unit: N/m, fit: [10, 200]}
+  c: {value: 20.3729, unit: N s/m, fit: [0, 100]}
+blocks:
+  x: {type: integrator, of: v, start: 0.9, unit: m}
+  v: {type: integrator, of: a, unit: m/s}
+  closer: {type: stiffness, of: x, k: k}
+  damper: {type: viscous, rate: v, c: c}
+  force: {type: sum, of: [closer, damper], unit: N}
+  a: {type: gain, of: force, k: 1/40}
+"""
+
+
+@pytest.mark.slow
+def test_dry_friction_is_found_behind_a_stribeck_curve_that_was_fitted_more_easily() -> None:
+    """A door that closes by itself, with a friction of 6 N: a fit from below ends at 4.86 N, where
+    the door makes one move more, and leaves 17 times the noise; a Stribeck curve gets past it."""
+    text = DOOR.replace("damper]", "damper, rub]")
+    truth = compile(read_text(f"{text}  rub: {{type: coulomb, rate: v, level: 6}}\n"))
+    rng, series = np.random.default_rng(3), []
+    for name, use, x in (("release", "train", 0.9), ("other", "validate", 0.5)):
+        run = simulate(truth, parameters={"k": 60.0, "c": 15.0}, start={"x": x})
+        noisy = run["x"] + 1e-3 * rng.standard_normal(len(run.t))
+        start = {"x": None, "v": None}
+        series.append(Measured(name, use, run.t, {"x": noisy}, start=start))
+    found = trace(compile(read_text(DOOR)), series, options={"only": ["force"]})
+    assert [str(effect) for effect in found.effects] == [COULOMB]
+    assert found.effects[0].params["level"] == pytest.approx(6.0, rel=0.01)

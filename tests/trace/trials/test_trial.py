@@ -40,6 +40,14 @@ def test_the_declared_model_is_fitted_to_the_truth_of_its_record() -> None:
     assert trial.degrees_of_freedom == trial.count - trial.unknowns
 
 
+def test_what_nothing_depends_on_stays_as_it_is_declared() -> None:
+    """A trace must not drop it for a term that the effects make superfluous."""
+    text = DIAGRAM.replace("parameters:\n", "parameters:\n  dead: {value: 3, fit: [0, 9]}\n")
+    trial = trial_of(problem_of(record(), text=text))
+    assert trial.values["dead"] == 3.0
+    assert [name for name in trial.values if trial.depends_on(name)] == ["k", "c"]
+
+
 def test_an_added_effect_is_fitted_with_its_coefficient() -> None:
     problem = problem_of(record(rubbed, end=7.0))
     coulomb = PlacedEffect(candidates_of(problem)[COULOMB], {"level": 0.1})

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 from tracewire.errors import FitError
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.model_pool import ModelPool
+from tracewire.trace.search.rivals import count_numbers
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.trial import Trial
 
@@ -34,6 +36,23 @@ def exchange_effects(pool: ModelPool, size: int) -> None:
                 others = [*_look_alikes(pool, name), *_alternatives(pool, model, name)]
                 new = {str(one): one for one in others if str(one) not in model.names}
                 _replace_effect(pool, model, name, list(new.values()))
+
+
+def exchange_for_simpler(pool: ModelPool, size: int, count: int) -> None:
+    """The best models of a size with each effect exchanged for those of fewer numbers that it
+    imitates by the same coefficient, as a Stribeck curve does Coulomb friction, however long the
+    search was: the fit of the simpler one may have ended in another minimum."""
+    rows = {name: row for screen in pool.first for name, row in screen.observable().items()}
+    for model in pool.best(size, count):
+        for effect in model.trials[-1].effects:
+            imitated = sorted(effect.candidate.imitated & rows.keys() - model.names)
+            simpler = [
+                one
+                for name in imitated
+                for one in _with_numbers_of(effect, rows[name].placed_effect)
+                if count_numbers(one) < count_numbers(effect)
+            ]
+            _replace_effect(pool, model, str(effect), simpler)
 
 
 def _least_first(pool: ModelPool, model: Finalist) -> list[str]:
@@ -89,24 +108,52 @@ def _replace_effect(
 ) -> None:
     """Refit a model with others in the place of an effect, from its values: also one that is
     known and far behind, as its fit may have ended in another minimum."""
+    (effect,) = (e for e in model.trials[-1].effects if str(e) == name)
     for other in others:
         names = model.names - {name} | {str(other)}
         known = pool.models.get((names, model.dropped))
-        near = known is not None and known.rss <= pool.options.hopeful * model.rss
-        if near:
+        if known is not None and _is_near(pool, known, model):
             continue
         pool.search.tell(f"refitting with {' and '.join(sorted(names))}")
-        trials: list[Trial] = []
-        replacement = other
-        for trial in reversed(model.trials):
-            kept = [effect for effect in trial.effects if str(effect) != name]
-            fixed = dict(trial.windows.criterion.parameters)
-            target = pool.target(trial.length, len(kept) + 1)
-            steps = pool.options.steps
-            fitted = pool.run_refit(trial, (*kept, replacement), fixed, steps, target)
-            if fitted is None:
-                break
-            trials.append(fitted)
-            replacement = fitted.effects[-1]
-        else:
-            pool.keep_better(Finalist(tuple(reversed(trials)), model.dropped))
+        again = [one for one in _with_numbers_of(effect, other) if one.values != other.values]
+        for begun in (other, *again):
+            replaced = _with_effect(pool, model, name, begun)
+            if replaced is not None:
+                pool.keep_better(replaced)
+                if _is_near(pool, replaced, model):
+                    break
+
+
+def _is_near(pool: ModelPool, one: Finalist, model: Finalist) -> bool:
+    """Whether a model leaves not much more than another one."""
+    return one.rss <= pool.options.hopeful * model.rss
+
+
+def _with_numbers_of(effect: PlacedEffect, other: PlacedEffect) -> list[PlacedEffect]:
+    """An effect with the numbers of one that imitates it by the same coefficient, as far as it has
+    these; none where that does not. At a level below its own a friction lets a body make one move
+    more, and no slope of a fit shows the way back."""
+    parameter = other.candidate.parameter
+    imitated = str(other) in effect.candidate.imitated
+    if not imitated or parameter != effect.candidate.parameter:
+        return []
+    shared = {name: x for name, x in effect.values.items() if name in other.values}
+    return [replace(other, values={**other.values, **shared})]
+
+
+def _with_effect(
+    pool: ModelPool, model: Finalist, name: str, replacement: PlacedEffect
+) -> Finalist | None:
+    """A model with another effect in the place of one, refitted at each horizon, the longer one
+    first; None where it does not run."""
+    trials: list[Trial] = []
+    for trial in reversed(model.trials):
+        kept = [effect for effect in trial.effects if str(effect) != name]
+        fixed = dict(trial.windows.criterion.parameters)
+        target = pool.target(trial.length, len(kept) + 1)
+        fitted = pool.run_refit(trial, (*kept, replacement), fixed, pool.options.steps, target)
+        if fitted is None:
+            return None
+        trials.append(fitted)
+        replacement = fitted.effects[-1]
+    return Finalist(tuple(reversed(trials)), model.dropped)

@@ -16,7 +16,11 @@ from contextlib import suppress
 import numpy as np
 
 from tracewire.errors import FitError
-from tracewire.trace.choose.exchanges import exchange_effects, exchange_single_effects
+from tracewire.trace.choose.exchanges import (
+    exchange_effects,
+    exchange_for_simpler,
+    exchange_single_effects,
+)
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.model_pool import ModelPool
 from tracewire.trace.choose.promising import no_longer_absorbed
@@ -56,7 +60,8 @@ def fill_pool(pool: ModelPool, declared: Finalist) -> None:
                     _extend_beside(pool, parent)
         if _improves(pool, size + 1):
             exchange_effects(pool, size + 1)
-    for size in range(1, options.effects + 1):
+    for size, count in zip(range(1, options.effects + 1), (*options.parents, 1), strict=False):
+        exchange_for_simpler(pool, size, count)
         for model in pool.best(size, options.exchanged):
             pool.without_terms(model)
 

@@ -298,6 +298,8 @@ class ModelPool:
         for unknown in model.trials[0].windows.criterion.unknowns:
             if unknown.low != 0.0 or unknown.name not in own or unknown.name in model.vanished:
                 continue
+            if not any(trial.depends_on(unknown.name) for trial in model.trials):
+                continue
             self.search.tell(f"refitting without {unknown.name}")
             smaller = self.fit(model, (), [unknown.name])
             if smaller is not None:

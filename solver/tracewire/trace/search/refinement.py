@@ -359,7 +359,7 @@ def _drop_terms(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
     options = search.options.search
     own = search.problem.declared.flat.parameters
     for unknown in best.windows.criterion.unknowns:
-        if unknown.low != 0.0 or unknown.name not in own:
+        if unknown.low != 0.0 or unknown.name not in own or not best.depends_on(unknown.name):
             continue
         at_noise = best.reduced_chi2 < search.options.trial.gate_noise
         error = best.standard_errors[unknown.name]

@@ -112,6 +112,11 @@ class Trial:
         """N_eff/N of the residuals."""
         return effective_fraction(self.windows.residuals)
 
+    def depends_on(self, name: str) -> bool:
+        """Whether a residual depends on an unknown."""
+        column = list(self.windows.values).index(name)
+        return any(near.slopes[:, column].any() for near in self.windows.linearisations)
+
     @cached_property
     def standard_errors(self) -> dict[str, float]:
         """The standard error of each fitted value, with the residual's autocorrelation counted."""
