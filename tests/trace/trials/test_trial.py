@@ -48,6 +48,17 @@ def test_what_nothing_depends_on_stays_as_it_is_declared() -> None:
     assert [name for name in trial.values if trial.depends_on(name)] == ["k", "c"]
 
 
+def test_an_effect_that_a_declared_parameter_can_make_up_for_is_undetermined() -> None:
+    """Its standard error, by the pseudo-inverse, is that of the two together."""
+    problem = problem_of(record(rubbed))
+    known = candidates_of(problem)
+    stiffness = PlacedEffect(known["stiffness @ force"], {"k": 3.0})
+    coulomb = PlacedEffect(known[COULOMB], {"level": 0.4})
+    trial = trial_of(problem, [stiffness, coulomb])
+    assert trial.undetermined == {"k", "stiffness.k"}
+    assert trial.standard_errors["stiffness.k"] < 0.05 * abs(stiffness.coefficient)
+
+
 def test_an_added_effect_is_fitted_with_its_coefficient() -> None:
     problem = problem_of(record(rubbed, end=7.0))
     coulomb = PlacedEffect(candidates_of(problem)[COULOMB], {"level": 0.1})

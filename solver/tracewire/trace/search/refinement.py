@@ -232,8 +232,9 @@ def _share_phases(search: Search, best: Trial) -> Trial:
 def _prune(search: Search, best: Trial) -> Trial:
     """The best model without effects that the others make superfluous.
 
-    At the noise BIC decides, and what is many standard errors from nothing is not tried without;
-    far above the noise an effect must take a third off the squared error.
+    At the noise BIC decides, and what is many standard errors from nothing is not tried without,
+    unless declared parameters can make up for it; far above the noise an effect must take a third
+    off the squared error.
     """
     options = search.options
     while len(best.effects) > 1:
@@ -247,7 +248,9 @@ def _prune(search: Search, best: Trial) -> Trial:
                 words=f"trying without {effect}",
             )
             for effect in best.effects
-            if not at_noise or _errors_from_nothing(best, effect) <= options.search.certain
+            if not at_noise
+            or effect.candidate.coefficient in best.undetermined
+            or _errors_from_nothing(best, effect) <= options.search.certain
         ]
         for smaller in search.refits.run(best, tasks):
             if smaller is None:

@@ -39,6 +39,16 @@ def inverse_information(slopes: Matrix) -> tuple[Matrix, Vector]:
     return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)), sizes
 
 
+def flat_values(slopes: Matrix, least: float = 1e-12, part: float = 0.1) -> NDArray[np.bool_]:
+    """Which values (n,) take part, by more than a `part`, in a direction along which residuals with
+    slopes (M, n) stay as they are: its information is below `least` of the largest."""
+    sizes = np.linalg.norm(slopes, axis=0)
+    scaled = slopes / np.where(sizes > 0, sizes, 1.0)
+    information, directions = np.linalg.eigh(scaled.T @ scaled)
+    flat = directions[:, information < least * max(float(information[-1]), 1e-300)]
+    return np.asarray((np.abs(flat) > part).any(axis=1) | (sizes == 0))
+
+
 def errors_behind(residuals: Sequence[Vector], others: Sequence[Vector], blocks: int) -> float:
     """By how many standard errors over blocks of time the squared residuals of another model are
     larger than those of one, on the same windows; of white noise half the root of how much larger.

@@ -41,7 +41,12 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
 from tracewire.trace.trials.phase_fit import fit_phase
 from tracewire.trace.trials.placed_effect import PlacedEffect
-from tracewire.trace.trials.statistics import bic, effective_fraction, inverse_information
+from tracewire.trace.trials.statistics import (
+    bic,
+    effective_fraction,
+    flat_values,
+    inverse_information,
+)
 
 Vector = NDArray[np.float64]
 
@@ -125,6 +130,12 @@ class Trial:
         spread = np.sqrt(np.maximum(np.diag(covariance) / self.effective_fraction, 0.0))
         spread = np.divide(spread, sizes, out=np.full(len(sizes), np.inf), where=sizes > 0)
         return dict(zip(self.windows.values, spread.tolist(), strict=True))
+
+    @cached_property
+    def undetermined(self) -> set[str]:
+        """The values that take part in a change of several which the data do not show."""
+        flat = flat_values(project_out_initial_states(self.windows)[0])
+        return {name for name, is_flat in zip(self.windows.values, flat, strict=True) if is_flat}
 
     def intervals(self, confidence: float) -> dict[str, tuple[float, float]]:
         """The interval of each fitted value, which holds the truth with this confidence."""
