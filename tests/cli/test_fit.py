@@ -284,6 +284,13 @@ def test_a_wrong_argument_is_told_in_one_line(
     assert told.err.count("\n") == 1
 
 
+def test_what_is_not_free_cannot_be_fixed(call: Any, decay: Path) -> None:
+    replaced(decay, ", fit: [1, 1000]", "")
+    told = call("fit", decay, "--fix", "x0")
+    assert told.code == 2
+    assert "'x0' is not free: a fit leaves it as it is, fixed or not. Free are: rate." in told.err
+
+
 def test_nothing_free_is_told(call: Any, decay: Path) -> None:
     decay.write_text(
         DECAY.replace(", fit: [0, 10]", "").replace(", fit: [1, 1000]", ""), encoding="utf-8"

@@ -166,7 +166,8 @@ def chosen_unknowns(
     """What a fit of some series may change: all that is free in the diagram, or what `free` names,
     without what `fixed` names; with numbers of sensors and what single series have of their own.
 
-    Raises OptionError: nothing is free, a name does not exist, a start outside the bounds.
+    Raises OptionError: nothing is free, a name does not exist, what is to be fixed is not free, a
+    start outside the bounds.
     """
     sensors = {u.name: u for u in (*sensor_unknowns(measured), *own_unknowns(measured))}
     known = [*model.flat.parameters, *sensors]
@@ -178,6 +179,11 @@ def chosen_unknowns(
     if problems:
         raise OptionError(problems)
     own = _with_bounds(model) if free is None else [name for name in free if name not in sensors]
+    if stay := [name for name in fixed if name not in own and name not in sensors]:
+        what = f"'{stay[0]}' is not free: a fit leaves it as it is, fixed or not"
+        hint = f"Free are: {', '.join([*own, *sensors]) or 'only starts'}. "
+        hint += "A start that is free has a value where its series says so: start: {x: 0.9}."
+        raise OptionError.one(what, hint=hint)
     found = free_unknowns(model, [name for name in own if name not in fixed], values)
     found += [
         sensor
