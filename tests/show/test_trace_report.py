@@ -257,6 +257,16 @@ def test_free_runs_are_in_the_unit_of_the_users_file(drawn: Any) -> None:
     np.testing.assert_allclose(measured.get_ydata(), np.degrees(FOUND.curves[2].measured))
 
 
+def test_laws_and_maps_are_over_variables_in_the_units_of_the_users_file(drawn: Any) -> None:
+    own = {"theta": ("deg", np.pi / 180), "omega": ("rpm", np.pi / 30)}
+    for plot, found in ((plot_law, FOUND), (plot_missing, UNEXPLAINED)):
+        si, users = (drawn(plot, one).axes[0] for one in (found, replace(found, users_units=own)))
+        assert users.get_xlabel() in ("theta [deg]", "omega [rpm]")
+        factor = dict(own.values())[users.get_xlabel().partition("[")[2][:-1]]
+        assert users.get_xlim() == pytest.approx([x / factor for x in si.get_xlim()])
+        assert users.get_ylabel() == si.get_ylabel()
+
+
 def test_candidates_have_bars_as_long_as_their_gain(drawn: Any) -> None:
     left, right = drawn(plot_candidates, FOUND).axes
     assert [bar.get_width() for bar in left.patches] == [905.3, 640.5, 433.0, 88.0]

@@ -22,7 +22,7 @@ from tracewire.show.style import (
     styled,
     with_unit,
 )
-from tracewire.trace import Force, Found, Means, unit_at
+from tracewire.trace import Force, Found, Means, unit_at, users_unit
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -91,10 +91,13 @@ def _label(force: Force, found: Found) -> str:
 
 
 def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, float]:
-    """Draw a force over q (0) or v (1); the limits that hold the law and the means."""
-    values = along(force, over)
+    """Draw a force over q (0) or v (1), in the unit in which the user has that; the limits that
+    hold the law and the means."""
+    name = force.names[over]
+    unit, factor = users_unit(found, name)
+    values = along(force, over) / factor
     there = means_over(force, over)
-    middles, means, errors = there.at, there.mean, there.error
+    middles, means, errors = there.at / factor, there.mean, there.error
     panel.axhline(0.0, color=BEFORE, linewidth=1.2, linestyle="--", zorder=2,
                   label="before: not in the diagram")  # fmt: skip
     panel.errorbar(middles, means, 2 * errors, color=MEASURED, linestyle="", marker="o",
@@ -115,9 +118,8 @@ def _draw(panel: Axes, force: Force, over: int, found: Found) -> tuple[float, fl
         look = {"linewidth": 1.8} if line else {"linestyle": "", "marker": ".", "markersize": 2.5}
         panel.plot(values[order][::every], force.fitted[order][::every], color=AFTER, zorder=3,
                    label="after: the fitted law", **look)  # fmt: skip
-    name = force.names[over]
     plain_numbers(panel.yaxis)
-    panel.set_xlabel(with_unit(name, found.units.get(name, "")))
+    panel.set_xlabel(with_unit(name, unit))
     margin = 0.1 * (high - low or 1.0)
     panel.set_ylim(low - margin, high + margin)
     return low - margin, high + margin

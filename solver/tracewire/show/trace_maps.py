@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +25,15 @@ from tracewire.show.style import (
 )
 from tracewire.show.trace_experiments import setting_unit
 from tracewire.show.trace_words import percent
-from tracewire.trace import Dependence, Experiment, Found, Missing, signal_of, unit_at
+from tracewire.trace import (
+    Dependence,
+    Experiment,
+    Found,
+    Missing,
+    signal_of,
+    unit_at,
+    users_unit,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,9 +88,15 @@ def _plot_shares(
 
 
 def plot_missing(found: Found, path: Path) -> Path:
-    """The torque that is missing, over the one or two variables on which it depends."""
+    """The torque that is missing, over the one or two variables on which it depends, in the units
+    in which the user has these."""
     missing = found.missing
     assert missing is not None
+    variables = [_variable(found, missing, number) for number in range(len(missing.variables))]
+    factors = [factor for _, factor in variables]
+    missing = replace(
+        missing, grid=tuple(x / factor for x, factor in zip(missing.grid, factors, strict=True))
+    )
     with styled():
         figure, panel = _square(7.0, 4.0)
         unit = unit_at(found, missing.place)
@@ -91,16 +106,17 @@ def plot_missing(found: Found, path: Path) -> Path:
             panel.set_ylabel(label)
         else:
             _draw_map(figure, panel, missing, label)
-            panel.set_ylabel(_variable(found, missing, 1))
-        panel.set_xlabel(_variable(found, missing, 0))
+            panel.set_ylabel(variables[1][0])
+        panel.set_xlabel(variables[0][0])
         panel.locator_params(axis="x", nbins=MAP.most_ticks)
         return save(figure, path)
 
 
-def _variable(found: Found, missing: Missing, number: int) -> str:
-    """A variable of the map by the user's name, with its unit."""
+def _variable(found: Found, missing: Missing, number: int) -> tuple[str, float]:
+    """A variable of the map by the user's name and unit, with the factor of that to SI."""
     name = signal_of(found, missing.place, missing.variables[number])
-    return with_unit(name, "s" if name == "t" else found.units.get(name, ""))
+    unit, factor = ("s", 1.0) if name == "t" else users_unit(found, name)
+    return with_unit(name, unit), factor
 
 
 def plot_confusable(found: Found, path: Path) -> Path:
