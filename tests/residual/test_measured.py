@@ -177,6 +177,9 @@ def one(file: Path, more: str = "", theta: str = "{column: angle, unit: deg}") -
     return loaded
 
 
+FREE = "time: t, start: {theta: free, omega: free}"
+
+
 def said(file: Path, more: str, theta: str = "{column: angle, unit: deg}") -> str:
     comma = ", " if more else ""
     text = f"  run: {{file: run.csv, signals: {{theta: {theta}}}{comma}{more}}}\n"
@@ -394,7 +397,18 @@ def test_a_matlab_file_is_a_series(file: Path) -> None:
 
 def test_a_record_in_order_has_no_remarks(file: Path) -> None:
     wave(file)
-    assert one(file, "time: t").remarks == ()
+    assert one(file, FREE).remarks == ()
+
+
+def test_a_record_that_begins_elsewhere_and_names_no_start_is_remarked(file: Path) -> None:
+    """A trace looked for what makes up for a start, and named an offset and a constant force."""
+    wave(file)
+    (remark,) = one(file, "time: t").remarks
+    assert remark == (
+        "theta begins at 0.5236, and the run is at 0 there (SI): where that is another start, say "
+        "start: {theta: free}"
+    )
+    assert one(file, FREE).remarks == ()
 
 
 def noisy(file: Path, header: str) -> None:
@@ -407,21 +421,21 @@ def noisy(file: Path, header: str) -> None:
 def test_a_noise_far_below_the_scatter_of_the_samples_is_remarked(file: Path) -> None:
     """The header alone says that the column is in degrees: the 0.0035 rad were meant in rad."""
     noisy(file, "t,angle [deg]")
-    (remark,) = one(file, "time: t", "{column: angle, sigma: 0.0035}").remarks
+    (remark,) = one(file, FREE, "{column: angle, sigma: 0.0035}").remarks
     start, _, rest = remark.partition("rad, and its samples scatter by ")
     assert start == "theta is declared with a noise of sigma = 6.11e-05 "
     assert float(rest.split()[0]) == pytest.approx(np.radians(0.2), rel=0.2)
     assert remark.endswith(
         "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
     )
-    assert one(file, "time: t", "{column: angle, sigma: 0.1}").remarks == ()
+    assert one(file, FREE, "{column: angle, sigma: 0.1}").remarks == ()
 
 
 def test_a_noise_above_the_whole_signal_is_remarked(file: Path) -> None:
     noisy(file, "t,angle [deg]")
-    (remark,) = one(file, "time: t", "{column: angle, sigma: 60}").remarks
+    (remark,) = one(file, FREE, "{column: angle, sigma: 60}").remarks
     assert "and the whole signal varies by 0.37 rad (rms): sigma is in the unit" in remark
-    assert one(file, "time: t", "{column: angle, sigma: 10}").remarks == ()
+    assert one(file, FREE, "{column: angle, sigma: 10}").remarks == ()
 
 
 def test_degrees_that_were_taken_for_radians_are_remarked(file: Path) -> None:
@@ -471,10 +485,10 @@ def test_an_angle_from_another_line_is_remarked(file: Path) -> None:
 def test_remarks_are_on_the_window_that_is_used(file: Path) -> None:
     t = np.concatenate([np.arange(200), np.arange(300, 500)]) * 0.01
     written(file, "\n".join(["t,angle", *(f"{x:.6g},{math.cos(6 * x):.6f}" for x in t)]))
-    assert one(file, "time: t").remarks == (
+    assert one(file, FREE).remarks == (
         "a gap in the time, where the step is 0.01 s: 1.01 s after t = 1.99 s",
     )
-    assert one(file, "time: t, to: 1.9").remarks == ()
+    assert one(file, f"{FREE}, to: 1.9").remarks == ()
 
 
 def test_an_input_that_rests_under_a_sign_is_remarked(file: Path) -> None:

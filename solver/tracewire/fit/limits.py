@@ -207,8 +207,6 @@ class DiagnosisLimits:
     """So many last samples of a drive may show in a residual ..."""
     components: Final[int] = 6
     """... and so many combinations of these."""
-    elsewhere: Final[float] = 0.2
-    """Of the range of a measured state: a first sample so far from the run's is another start."""
     fast: Final[float] = 3.0
     """The size of a fitted start rate, in the fastest rate between two samples of what it is the
     rate of, from which on no record shows such a start."""

@@ -12,7 +12,7 @@ from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
 from tracewire.formula import Name
-from tracewire.residual import Criterion, Measured
+from tracewire.residual import Criterion, Measured, begins_elsewhere
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -106,13 +106,8 @@ def starts_elsewhere(
     for c in comparisons:
         if c.series not in without or c.signal not in model.states:
             continue
-        measured, simulated = float(c.measured[0]), float(c.after[0])
-        if abs(measured - simulated) > DIAGNOSIS.elsewhere * float(np.ptp(c.measured)):
-            found.append(
-                f"{c.series}: {c.signal} begins at {measured:.4g}, and the run is at "
-                f"{simulated:.4g} there (SI): where that is another start, say "
-                f"start: {{{c.signal}: free}}"
-            )
+        if text := begins_elsewhere(c.signal, c.measured, float(c.after[0])):
+            found.append(f"{c.series}: {text}")
     return found
 
 

@@ -15,6 +15,7 @@ from .noise import degrees_of, noise_in, noise_of, noises_beside
 from .noise_estimate import NoiseEstimate, noise_level, noise_of_signal
 from .noise_of_channels import channel_noise, estimate_noise
 from .past import longest_delay, with_past
+from .remarks import begins_elsewhere
 from .segment import (
     OWN,
     Segment,
@@ -65,6 +66,7 @@ __all__ = [
     "Unknown",
     "Windows",
     "absolute_tolerances",
+    "begins_elsewhere",
     "bounded_step",
     "channel_noise",
     "chosen_unknowns",

@@ -273,6 +273,8 @@ class RemarkLimits:
     """Seconds, three years: a time that is larger counts from a date."""
     near_pi: Final[float] = 0.3
     """In rad: a first sample so near to pi from the start counts from the other end."""
+    elsewhere: Final[float] = 0.2
+    """Of the range of a measured state: a first sample so far from the run's is another start."""
     resting: Final[int] = 5
     """Samples of exactly zero that are no passage through zero."""
     noisier: Final[float] = 10.0

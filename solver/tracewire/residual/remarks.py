@@ -60,8 +60,21 @@ def remarks_of(
         found += signal_remarks(
             name, read.t, column / factor, unit, exact=exact, cleaned=cleaned, noise=noise / factor
         )
-    found += _on_span(model, series, read, values, zero)
-    states = {state.name: state for state in model.flat.states}
+    about_units = _on_span(model, series, read, values, zero) + _on_angles(
+        model, series, read, values
+    )
+    found += about_units or _on_start(model, series, read, values, zero)
+    found += _on_sigma(model, series, read)
+    found += _on_rest(model, series, read)
+    found += _on_hold(series, read)
+    return tuple(found)
+
+
+def _on_angles(
+    model: Model, series: Series, read: Record, values: Mapping[str, float]
+) -> list[str]:
+    """Angles that may be in degrees, or counted from another line."""
+    states, found = {state.name: state for state in model.flat.states}, []
     for name in series.channels:
         given = read.unit(name)
         angle = given.text or model.flat.units.get(name, "")
@@ -83,10 +96,7 @@ def remarks_of(
                     f"{name} begins at {column[0]:.4g} rad, about pi from the diagram's start at "
                     f"{start:.4g} rad: is the angle measured from another line?"
                 )
-    found += _on_sigma(model, series, read)
-    found += _on_rest(model, series, read)
-    found += _on_hold(series, read)
-    return tuple(found)
+    return found
 
 
 def _channel_of(series: Series, name: str) -> Channel | None:
@@ -171,6 +181,36 @@ def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
             "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
         )
     return found
+
+
+def begins_elsewhere(signal: str, measured: NDArray[np.float64], simulated: float) -> str:
+    """What to say of a measured state (N,) whose run begins elsewhere, in SI; '' where it does
+    not."""
+    if not abs(measured[0] - simulated) > REMARK.elsewhere * float(np.ptp(measured)):
+        return ""
+    return (
+        f"{signal} begins at {float(measured[0]):.4g}, and the run is at {simulated:.4g} there "
+        f"(SI): where that is another start, say start: {{{signal}: free}}"
+    )
+
+
+def _on_start(
+    model: Model, series: Series, read: Record, values: Mapping[str, float], zero: float
+) -> list[str]:
+    """Measured states that begin elsewhere than the diagram says, where the series says no start: a
+    trace would look for what makes up for it."""
+    begin = float(evaluate(model.flat.span[0], values))
+    if series.start or series.preset or not np.isclose(read.t[0] - zero, begin):
+        return []
+    free = {name for name, parameter in model.flat.parameters.items() if parameter.fit is not None}
+    found = []
+    for state in model.flat.states:
+        channel, column = series.channels.get(state.name), read.columns.get(state.name)
+        if channel is None or column is None or channel.modulo is not None:
+            continue
+        if channel.gain is None and free.isdisjoint(names_of(state.start)):
+            found.append(begins_elsewhere(state.name, column, evaluate(state.start, values)))
+    return [text for text in found if text]
 
 
 def _on_rest(model: Model, series: Series, read: Record) -> list[str]:
