@@ -17,7 +17,12 @@ from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.found import Dependence, Missing
 from tracewire.trace.limits import BATCH
 from tracewire.trace.missing.bases import Basis, bases_of
-from tracewire.trace.missing.dependence import ScoredBasis, choose_smallest, map_dependence
+from tracewire.trace.missing.dependence import (
+    ScoredBasis,
+    _solve_ridge,
+    choose_smallest,
+    map_dependence,
+)
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.trials.trial import TraceProblem, Trial
@@ -173,6 +178,29 @@ DRIVE = Place("drive.u", "drive", "u")
 def chosen(*rows: ScoredBasis) -> tuple[str, tuple[str, ...]] | None:
     best = choose_smallest(rows, OPTIONS.map)
     return None if best is None else (best.place.name, best.basis.variables)
+
+
+@pytest.mark.parametrize("alike", [1.0, 3e-5])
+def test_a_ridge_is_solved_however_alike_the_columns_are(alike: float) -> None:
+    """Where a body hardly moves, what is left of a basis without the starts is rounding, and a
+    factor of Cholesky is none: a trace ended in that."""
+    rng = np.random.default_rng(0)
+    first = rng.standard_normal((400, 1))
+    known = np.hstack([first, first + alike * rng.standard_normal((400, 1))])
+    own = 1.0 if alike == 1.0 else 1e-7
+    basis = known @ rng.standard_normal((2, 30)) + own * rng.standard_normal((400, 30))
+    residual = rng.standard_normal((400, 1))
+    columns = np.hstack([known, basis, residual])
+    ridges = np.array([1e-6, 1.0])
+    found = _solve_ridge(columns.T @ columns, 2, ridges)
+    assert np.isfinite(found).all()
+    unit = np.sum(basis**2) / 30
+    for values, ridge in zip(found, ridges, strict=True):
+        penalty = np.hstack([np.zeros((30, 2)), np.sqrt(ridge * unit) * np.eye(30)])
+        whole = np.vstack([columns[:, :-1], penalty])
+        target = np.concatenate([-residual[:, 0], np.zeros(30)])
+        exact = np.linalg.lstsq(whole, target)[0]
+        assert whole @ values == pytest.approx(whole @ exact, abs=1e-3)
 
 
 def test_fewer_variables_are_preferred_within_five_percent() -> None:

@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve
 
 from tracewire.residual import Projection, project_out_initial_states
 from tracewire.trace.candidates.places import Place
@@ -249,14 +248,18 @@ def _solve_ridge(products: Matrix, known: int, ridges: Vector) -> Matrix:
     """The coefficients for each ridge, (ridges, n), which minimise |r + A c|^2 + ridge |c|^2.
 
     The first `known` columns bear no ridge. The ridge is in units of the mean square of the rest.
+    Without them the information of the rest has no negative eigenvalue but for rounding, which
+    grows as they are more alike.
     """
     a, b, c = products[:known, :known], products[:known, known:-1], products[known:-1, known:-1]
     p, q = products[:known, -1], products[known:-1, -1]
     inverse = np.linalg.pinv(a, rcond=1e-10, hermitian=True)
     inner = c - b.T @ inverse @ b
     right = q - b.T @ inverse @ p
-    unit = max(float(np.trace(c)) / max(len(c), 1), 1e-200) * np.eye(len(c))
-    smooth = -np.stack([solve(inner + r * unit, right, assume_a="pos") for r in ridges.tolist()])
+    unit = max(float(np.trace(c)) / max(len(c), 1), 1e-200)
+    information, directions = np.linalg.eigh(inner)
+    penalised = np.maximum(information, 0.0) + unit * ridges[:, None]
+    smooth = -(directions.T @ right / penalised) @ directions.T
     exact = -(p + smooth @ b.T) @ inverse
     return np.concatenate((exact, smooth), axis=1)
 
