@@ -12,7 +12,7 @@ from tracewire.diagram.override import without_part
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
-from tracewire.diagram.strict import Entries, Node, compose
+from tracewire.diagram.strict import Entries, Node, Scalar, compose
 from tracewire.diagram.text_edits import (
     TextEdit,
     apply_edits,
@@ -147,13 +147,15 @@ def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:
 
 def text_from(diagram: Diagram, folder: Path) -> str:
     """The text of a diagram as a file in another folder has it: the files of its own series as
-    seen from there. A file that is not there keeps its path."""
+    seen from there. A file that is not there, or has its whole path, keeps that."""
     section = SourceMap(diagram).own.values.get(SECTION)
     changes = []
     for name, _, series in section if isinstance(section, Entries) else ():
         node = series.values.get("file") if isinstance(series, Entries) else None
         file = diagram.measured[name].file if name in diagram.measured else None
-        if node is not None and file is not None and file.is_file():
+        if not isinstance(node, Scalar) or Path(node.text).is_absolute():
+            continue
+        if file is not None and file.is_file():
             seen = Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
             changes.append(replace_node(node, quote(seen)))
     return apply_edits(diagram.text, changes)
