@@ -19,6 +19,7 @@ from tracewire.show.trace_summary import (
     paragraph_of,
     ties_words,
 )
+from tracewire.show.trace_tables import power_table
 from tracewire.show.trace_text import answer_lines
 from tracewire.show.trace_words import (
     chance_words,
@@ -33,7 +34,15 @@ from tracewire.show.trace_words import (
     unseen_errors,
     value_words,
 )
-from tracewire.trace.found import Dependence, Explained, FoundEffect, HeldOut, Remainder, Tie
+from tracewire.trace.found import (
+    Dependence,
+    Explained,
+    FoundEffect,
+    HeldOut,
+    Power,
+    Remainder,
+    Tie,
+)
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.units import users_unit
 
@@ -318,6 +327,20 @@ def test_the_effect_of_a_sensor_is_called_by_what_it_does() -> None:
     )
     found = replace(FOUND, effects=(effect,), units={"offset.theta": "rad"})
     assert "lacks an offset in the sensor of 'theta', offset = 0.02 rad" in paragraph_of(found)
+    degrees = replace(found, users_units={"theta": ("deg", math.radians(1))})
+    assert "offset = 1.146 deg" in paragraph_of(degrees)
+
+
+def test_what_would_have_been_seen_of_a_sensor_is_in_the_unit_of_its_column() -> None:
+    powers = (
+        Power("sensor_offset", "sensor.theta", "offset.theta", math.radians(0.5)),
+        Power("sensor_quad", "sensor.theta", "quad.theta", math.degrees(0.25)),
+    )
+    own = {"theta": ("deg", math.radians(1))}
+    found = replace(NULL, power=powers, users_units=own)
+    rows = [row[2:] for row in power_table(found).rows]
+    assert rows == [("offset", "0.5", "deg"), ("quad", "0.25", "1/deg")]
+    assert "sensor_offset @ sensor.theta offset = 0.5 deg" in " ".join(answer_lines(found))
 
 
 def test_an_interrupted_trace_says_so_first() -> None:

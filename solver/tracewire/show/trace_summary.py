@@ -28,7 +28,14 @@ from tracewire.show.trace_words import (
     value_words,
     variables_words,
 )
-from tracewire.trace import Found, FoundEffect, Tie, TraceOptions, coefficient_of, unit_of_power
+from tracewire.trace import (
+    Found,
+    FoundEffect,
+    Tie,
+    TraceOptions,
+    coefficient_of,
+    users_unit_of_power,
+)
 
 PERHAPS = (
     "a random disturbance of the motion (process noise)",
@@ -219,8 +226,9 @@ def _null(found: Found) -> list[str]:
     if found.power:
         few = [
             f"{p.name} {place_words(p.place)} from {coefficient_of(p)} = "
-            f"{p.smallest:.3g} {unit_of_power(found, p)}".rstrip()
+            f"{p.smallest / factor:.3g} {unit}".rstrip()
             for p in common_powers(found)[: WORD.most_told]
+            for unit, factor in [users_unit_of_power(found, p)]
         ]
         parts.append(f"These data would have shown, for example, {both_of(few)} on.")
     return parts

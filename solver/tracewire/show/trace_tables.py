@@ -22,9 +22,9 @@ from tracewire.trace import (
     Found,
     coefficient_of,
     signal_of,
-    unit_of,
-    unit_of_power,
     users_unit,
+    users_unit_of,
+    users_unit_of_power,
 )
 
 
@@ -45,17 +45,19 @@ def trace_tables(found: Found) -> tuple[Table, ...]:
 
 
 def effects_table(found: Found) -> Table:
-    """The parameters of the effects that were found, in SI, with 95 % intervals."""
+    """The parameters of the effects that were found, of a sensor in the unit of its column and
+    else in SI, with 95 % intervals."""
     rows = []
     for effect in found.effects:
         first = effect.name, effect.place
         last = percent(effect.masked), _number(own_gain(found, effect), ".4g")
         for name, value in effect.params.items():
-            low, high = effect.intervals.get(name, (math.nan, math.nan))
+            unit, factor = users_unit_of(found, effect, name)
+            low, high = (end / factor for end in effect.intervals.get(name, (math.nan, math.nan)))
             known = math.isfinite(low) and math.isfinite(high)
-            shown_value, *ends = to_its_interval(value, low, high)
+            shown_value, *ends = to_its_interval(value / factor, low, high)
             interval = " to ".join(ends) if known else ""
-            rows.append((*first, name, shown_value, interval, unit_of(found, effect, name), *last))
+            rows.append((*first, name, shown_value, interval, unit, *last))
             first, last = ("", ""), ("", "")
     header = ("effect", "place", "parameter", "value", "95 % interval", "unit", "masked",
               "gain")  # fmt: skip
@@ -161,8 +163,9 @@ def power_table(found: Found, most: int = WORD.report_rows) -> Table:
     """The smallest coefficient of each effect that these data would have shown."""
     powers = common_powers(found)
     rows = [
-        (p.name, p.place, coefficient_of(p), _number(p.smallest, ".3g"), unit_of_power(found, p))
+        (p.name, p.place, coefficient_of(p), _number(p.smallest / factor, ".3g"), unit)
         for p in powers[:most]
+        for unit, factor in [users_unit_of_power(found, p)]
     ]
     if len(powers) > most:
         rows.append((f"and {len(powers) - most} more", "", "", "", ""))

@@ -44,8 +44,8 @@ from tracewire.trace import (
     SearchStep,
     coefficient_of,
     signal_of,
-    unit_of_power,
     users_unit,
+    users_unit_of_power,
 )
 
 
@@ -72,9 +72,9 @@ def answer_lines(found: Found) -> tuple[str, ...]:
     lines += [f"  {experiment_words(found, experiment)}" for experiment in found.experiments]
     if found.verdict == "null" and found.power:
         least = ", ".join(
-            f"{p.name} @ {p.place} {coefficient_of(p)} = {p.smallest:.2g} "
-            f"{unit_of_power(found, p)}".rstrip()
+            f"{p.name} @ {p.place} {coefficient_of(p)} = {p.smallest / factor:.2g} {unit}".rstrip()
             for p in common_powers(found)[: WORD.most_channels]
+            for unit, factor in [users_unit_of_power(found, p)]
         )
         lines.append(f"  smallest coefficients that these data would show: {least}")
     lines += [f"  {text}" for text in (_advice(found), limits_words(found.options)) if text]

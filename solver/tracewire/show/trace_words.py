@@ -18,8 +18,8 @@ from tracewire.trace import (
     Remainder,
     is_first_order,
     signal_of,
-    unit_of,
     users_unit,
+    users_unit_of,
 )
 
 SENSORS = {f"sensor_{name}": term.words for name, term in SENSOR_TERMS.items()}
@@ -77,13 +77,13 @@ def _rounded(value: float, last: int) -> str:
 
 def value_words(found: Found, effect: FoundEffect, name: str) -> str:
     """A parameter of an effect with its unit and 95 % interval: `level = 0.800 N m (...)`."""
-    unit = unit_of(found, effect, name)
-    unit = f" {unit}" if unit else ""
-    low, high = effect.intervals.get(name, (math.nan, math.nan))
+    unit, factor = users_unit_of(found, effect, name)
+    unit, value = f" {unit}" if unit else "", effect.params[name] / factor
+    low, high = (end / factor for end in effect.intervals.get(name, (math.nan, math.nan)))
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
-        return f"{name} = {effect.params[name]:.4g}{unit}"
-    value, low_text, high_text = to_its_interval(effect.params[name], low, high)
-    return f"{name} = {value}{unit} (95 %: {low_text} to {high_text})"
+        return f"{name} = {value:.4g}{unit}"
+    shown_value, low_text, high_text = to_its_interval(value, low, high)
+    return f"{name} = {shown_value}{unit} (95 %: {low_text} to {high_text})"
 
 
 def share_words(explained: Explained) -> str:

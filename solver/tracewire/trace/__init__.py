@@ -38,9 +38,9 @@ from tracewire.trace.units import (
     is_first_order,
     signal_of,
     unit_at,
-    unit_of,
-    unit_of_power,
     users_unit,
+    users_unit_of,
+    users_unit_of_power,
 )
 
 __all__ = [
@@ -80,7 +80,7 @@ __all__ = [
     "signal_of",
     "trace",
     "unit_at",
-    "unit_of",
-    "unit_of_power",
     "users_unit",
+    "users_unit_of",
+    "users_unit_of_power",
 ]

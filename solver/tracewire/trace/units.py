@@ -138,6 +138,28 @@ def unit_of_power(found: Found, power: Power) -> str:
     return unit_of_effect(found, power.name, power.place, coefficient_of(power))
 
 
+def users_unit_of(found: Found, effect: FoundEffect, name: str) -> tuple[str, float]:
+    """The unit in which a user has a parameter of an effect, and its factor to SI: that of the
+    column for what a sensor does, else that of SI."""
+    if effect.block:
+        return unit_of(found, effect, name), 1.0
+    return _users_unit_of_sensor(found, effect.place, name)
+
+
+def users_unit_of_power(found: Found, power: Power) -> tuple[str, float]:
+    """The same of the smallest coefficient."""
+    if not power.name.startswith("sensor_"):
+        return unit_of_power(found, power), 1.0
+    return _users_unit_of_sensor(found, power.place, coefficient_of(power))
+
+
+def _users_unit_of_sensor(found: Found, place: str, term: str) -> tuple[str, float]:
+    signal = place.partition(".")[2]
+    unit, factor = users_unit(found, signal)
+    known = SENSOR_TERMS[term].unit_of(unit) or found.units.get(f"{term}.{signal}", "")
+    return known, SENSOR_TERMS[term].factor(factor)
+
+
 def coefficient_of(power: Power) -> str:
     """The coefficient of an effect as its block, or the sensor, calls it."""
     if power.name.startswith("sensor_"):
