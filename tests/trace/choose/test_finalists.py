@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from tracewire.trace.choose.finalists import _search_models
+from tracewire.trace.choose.finalists import _search_models, _simplify
 from tracewire.trace.options import TraceOptions
 
 
@@ -44,3 +44,15 @@ def test_a_search_that_took_nothing_has_no_path() -> None:
     declared, one = trial(), trial("coulomb")
     steps = [SimpleNamespace(before=declared, refits=[SimpleNamespace(trial=one)])]
     assert _search_models(pool_of(steps, declared)) == [one]
+
+
+def test_models_of_each_size_are_simplified() -> None:
+    asked: list[tuple[int, int]] = []
+
+    def best(size: int, count: int) -> list[Any]:
+        asked.append((size, count))
+        return []
+
+    pool: Any = SimpleNamespace(options=TraceOptions(effects=4), first=[], best=best)
+    _simplify(pool)
+    assert asked == [(1, 2), (1, 1), (2, 1), (2, 1), (3, 1), (3, 1), (4, 1), (4, 1)]

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
+from itertools import chain, repeat
 
 import numpy as np
 
@@ -60,7 +61,14 @@ def fill_pool(pool: ModelPool, declared: Finalist) -> None:
                     _extend_beside(pool, parent)
         if _improves(pool, size + 1):
             exchange_effects(pool, size + 1)
-    for size, count in zip(range(1, options.effects + 1), (*options.parents, 1), strict=False):
+    _simplify(pool)
+
+
+def _simplify(pool: ModelPool) -> None:
+    """The best models of each size with simpler laws, and without declared terms."""
+    options = pool.options
+    counts = chain(options.parents, repeat(1))
+    for size, count in zip(range(1, options.effects + 1), counts, strict=False):
         exchange_for_simpler(pool, size, count)
         for model in pool.best(size, options.exchanged):
             pool.without_terms(model)
