@@ -403,6 +403,8 @@ def test_a_record_that_begins_elsewhere_and_names_no_start_is_remarked(file: Pat
     wave(file)
     (remark,) = one(file, "time: t").remarks
     assert remark.startswith("theta begins at 0.5236, and the run is at 0 there (SI): where that")
+    shifted = "{column: angle, unit: deg, offset: {value: 30, fit: [0, 60]}}"
+    assert one(file, "time: t", shifted).remarks == ()
 
 
 def noisy(file: Path, header: str) -> None:

@@ -208,7 +208,8 @@ def _on_start(
         channel, column = series.channels.get(state.name), read.columns.get(state.name)
         if channel is None or column is None or channel.modulo is not None:
             continue
-        if channel.gain is None and free.isdisjoint(names_of(state.start)):
+        plain = channel.gain is None and channel.offset is None
+        if plain and free.isdisjoint(names_of(state.start)):
             found.append(begins_elsewhere(state.name, column, evaluate(state.start, values)))
     return [text for text in found if text]
 
