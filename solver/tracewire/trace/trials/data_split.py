@@ -10,7 +10,7 @@ import numpy as np
 from tracewire.compile import Model
 from tracewire.data import usual_range
 from tracewire.errors import DataError, Problem
-from tracewire.residual import Measured, Section, Segment, cut_windows
+from tracewire.residual import Measured, Section, Segment, cut_windows, noise_of_signal
 from tracewire.trace.data_thresholds import SplitOptions
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.period import passing_period
@@ -134,13 +134,15 @@ def shortest_window(model: Model, data_split: DataSplit, options: TraceOptions) 
 
 def _moving_samples(measured: Measured, options: SplitOptions) -> int:
     """The samples before all signals settle: from there on each moves through no more than a part
-    of its range."""
+    of its range and what white noise does, sigma 2 sqrt(2 ln n) for n samples."""
     last = 0
-    for y in measured.values.values():
+    for name, y in measured.values.items():
         low, high = usual_range(y)
+        noise = measured.sigma.get(name) or noise_of_signal(y, measured.t).level
         behind = y[::-1]
         ranges = (np.maximum.accumulate(behind) - np.minimum.accumulate(behind))[::-1]
-        last = max(last, int(np.count_nonzero(ranges > options.moving * (high - low))))
+        by_noise = 2 * noise * np.sqrt(2 * np.log(np.arange(len(y), 0, -1)))
+        last = max(last, int(np.count_nonzero(ranges > options.moving * (high - low) + by_noise)))
     return last
 
 
