@@ -27,6 +27,7 @@ MOTION = (
 hard_stop = Block(
     name="hard_stop",
     doc="A body that moves between two stops, bounces off them and may come to rest on them.",
+    require=("low <= start", "start <= high"),
     inputs=(FORCE,),
     parameters=(
         MASS,
@@ -57,6 +58,7 @@ hard_stop = Block(
 bouncing_body = Block(
     name="bouncing_body",
     doc="A body above a floor, which bounces off it and may come to rest on it.",
+    require=("level <= start",),
     inputs=(FORCE,),
     parameters=(
         MASS,
@@ -83,6 +85,7 @@ bouncing_body = Block(
 collision = Block(
     name="collision",
     doc="Two bodies on a line, which bounce off each other and may stay together.",
+    require=("distance <= start2 - start1",),
     inputs=(
         Input("force1", doc="on the first body, but for that of the contact", default="0"),
         Input("force2", doc="on the second body, but for that of the contact", default="0"),

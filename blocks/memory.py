@@ -10,6 +10,7 @@ THRESHOLD = Parameter("threshold", doc="a signal at or above it counts as 1", de
 relay = Block(
     name="relay",
     doc="A switch with hysteresis, also called Schmitt trigger.",
+    require=("off_at <= on_at",),
     inputs=(Input("of"),),
     parameters=(
         Parameter("on_at", doc="switches on where the signal reaches it from below"),

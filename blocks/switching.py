@@ -70,7 +70,7 @@ quantizer = Block(
     name="quantizer",
     doc="The nearest whole multiple of an interval, as of a converter or an encoder.",
     inputs=(Input("of"),),
-    parameters=(Parameter("interval", doc="between two levels", above=0.0),),
+    parameters=(Parameter("interval", doc="between two levels", above=0.0, unit_of="of"),),
     outputs=(
         Output("y", "interval*floor(of/interval + 1/2)", doc="jumps; halves go up", unit_of="of"),
     ),

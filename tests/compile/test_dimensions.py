@@ -147,6 +147,44 @@ blocks:
     assert message in "".join(found)
 
 
+@pytest.mark.parametrize(
+    ("block", "message"),
+    [
+        (
+            "relay, of: u, on_at: {value: 2, unit: m}, off_at: {value: 1, unit: N}",
+            "block 'b': 'u' (line 4) is in N and 'b.on_at' is in m: they cannot be added or compa",
+        ),
+        (
+            "latch, set: u, reset: u, threshold: {value: 1, unit: V}",
+            "block 'b': 'u' (line 4) is in N and 'b.threshold' is in V: they cannot be added or c",
+        ),
+        (
+            "quantizer, of: u, interval: {value: 1, unit: mm}",
+            "block 'b': 'b.interval' is in m, and the block takes it in N. ",
+        ),
+        ("relay, of: u, on_at: {value: 2, unit: kN}, off_at: 1", ""),
+        ("quantizer, of: u, interval: {value: 2, unit: mN}", ""),
+    ],
+)
+def test_the_levels_of_a_block_with_memory_have_the_unit_of_its_input(
+    block: str, message: str
+) -> None:
+    found = told(f"""\
+parameters: {{F: {{value: 3, unit: N}}}}
+blocks:
+  b: {{type: {block}}}
+  u: {{type: sine, amplitude: F, omega: 1, unit: N}}
+""")
+    assert bool(found) == bool(message)
+    assert message in "".join(found)
+
+
+@pytest.mark.parametrize("condition", ["m > k", "m*k > k**2"])
+def test_what_a_diagram_requires_compares_like_with_like(condition: str) -> None:
+    (found,) = told(f"require: [{condition}]\n" + BODY)
+    assert found.startswith("<text>:1:") and "they cannot be added or compared" in found
+
+
 def test_a_row_of_blocks_is_told_once() -> None:
     text = """
 inputs: {u: {unit: m}}

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from solve.models import kinds, run
+from solve.models import kinds, made, run
+from tracewire.errors import DiagramError, SimulationError
+from tracewire.solve import simulate_many
 
 G = 9.81
 FALL = math.sqrt(2 * 10 / G)
@@ -46,6 +48,30 @@ def test_an_elastic_ball_keeps_its_energy_over_many_impacts() -> None:
     assert kinds(result).count("impact") == 1 + int((100 - FALL) // (2 * FALL))
     energy = 0.5 * result["ball.v"] ** 2 + G * result["ball.x"]
     assert energy == pytest.approx(10 * G, rel=1e-8)
+
+
+@pytest.mark.parametrize("stop", ["high: 0.04, start: 0.05", "high: 1, low: 0.2", "high: -1"])
+def test_a_body_that_begins_beyond_its_stop_is_refused(stop: str) -> None:
+    with pytest.raises(DiagramError, match=r"'b': the parameters must meet .*(start <= high|low)"):
+        run(f"blocks: {{b: {{type: hard_stop, {stop}}}}}")
+
+
+@pytest.mark.parametrize("x", [-1e-3, -5.0])
+def test_a_start_that_a_run_is_given_beyond_a_contact_is_refused(x: float) -> None:
+    """It would fall for ever: nothing ever reaches the floor from above."""
+    with pytest.raises(SimulationError) as caught:
+        run(BALL, start={"ball.x": x})
+    assert str(caught.value) == (
+        "<text>:5:3: block 'ball': the start at t = 0 s lies beyond the contact of ball.impact, "
+        f"where 'ball.x - 0' has crossed zero; ball.x = {x:.6g}, ball.v = 0. "
+        "Start on the side where the body can be."
+    )
+
+
+def test_of_many_runs_those_that_begin_beyond_a_contact_fail() -> None:
+    rows = [{"start.ball.x": 1.0}, {"start.ball.x": -1.0}]
+    many = simulate_many(made(BALL), rows, span=(0, 0.1))
+    assert list(many.errors) == [1]
 
 
 STOPS = """

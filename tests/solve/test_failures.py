@@ -13,6 +13,7 @@ from solve.models import LIMITS, one
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError, SimulationError
+from tracewire.library import Block, Input, Mode, Output, Transition, load_library
 from tracewire.solve import simulate, simulate_many
 
 
@@ -66,15 +67,31 @@ blocks:
     assert "use hysteresis or a block with memory" in message
 
 
+HURRY = Block(
+    name="hurry",
+    doc="Two modes, each of which is left where the other is entered.",
+    inputs=(Input("of"),),
+    modes=(Mode("off"), Mode("on")),
+    transitions=(
+        Transition("off", "on", when="of >= 1"),
+        Transition("on", "off", when="of >= 1"),
+    ),
+    outputs=(Output("y", {"off": "0", "on": "1"}),),
+)
+
+
 def test_a_memory_that_is_led_in_a_circle_is_named() -> None:
-    message = said("""
+    text = """
 span: [0, 7]
 blocks:
-  x: {type: integrator, of: rate, start: 0.5}
-  relay: {type: relay, of: x, on_at: 1, off_at: 2}
-  rate: {type: expression, formula: 1 - 2*relay}
-""")
-    assert "<text>:5:3: block 'relay': the transitions of 'relay' at t = 0.5 s lead back" in message
+  x: {type: integrator, of: 1, start: 0.5}
+  hurry: {type: hurry, of: x}
+"""
+    library = load_library().extended({"hurry": HURRY}, {})
+    with pytest.raises(SimulationError) as caught:
+        simulate(compile(read_text(text, library=library)), limits=LIMITS)
+    message = str(caught.value)
+    assert "<text>:5:3: block 'hurry': the transitions of 'hurry' at t = 0.5 s lead back" in message
     assert "Let the condition that leaves a mode be false where the mode is entered." in message
 
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from solve.models import kinds, run
-from tracewire.errors import SimulationError
+from tracewire.errors import DiagramError
 
 TRIANGLE = """
 span: [0, 7]
@@ -40,9 +40,8 @@ def test_a_relay_starts_as_told_where_its_signal_leaves_both_open(
 
 
 def test_a_relay_whose_levels_are_the_wrong_way_round_is_refused_by_name() -> None:
-    text = TRIANGLE.replace("off_at: 0", "off_at: 2")
-    with pytest.raises(SimulationError, match="relay"):
-        run(text)
+    with pytest.raises(DiagramError, match=r"'relay': .* must meet off_at <= on_at"):
+        run(TRIANGLE.replace("off_at: 0", "off_at: 2"))
 
 
 BACKLASH = """

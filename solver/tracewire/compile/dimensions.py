@@ -85,6 +85,16 @@ class _Units:
             self.term(event.when)
             for name, formula in event.set.items():
                 self.same(name, formula, f"what '{event.name}' sets it to")
+        for memory in self.flat.memories:
+            self.where = memory.place
+            self.term(memory.start)
+            for transition in memory.transitions:
+                self.term(transition.when)
+                for name, formula in transition.set.items():
+                    self.same(name, formula, "what a transition sets it to")
+        for condition in self.flat.require:
+            self.where = condition.place
+            self.term(condition.formula)
         return _told_once(self.found)
 
     def term(self, formula: Expression) -> Term | None:
@@ -124,12 +134,14 @@ class _Units:
 
     def as_asked(self, asked: FlatAsked) -> None:
         """The unit of a value of a block is that of its declaration."""
-        given, wanted = self.term(asked.formula), dimension_of(asked.unit)
+        given, like = self.term(asked.formula), asked.like
+        wanted = dimension_of(asked.unit) if like is None else self.term(like)
         if given is None or wanted is None:
             return
         written = self.text(given, asked.formula)
         if not self.agree(given, wanted):
-            self.note(f"{self.said(asked.formula, given)}, and the block takes it in {asked.unit}")
+            unit = asked.unit if like is None else self.text(wanted, like)
+            self.note(f"{self.said(asked.formula, given)}, and the block takes it in {unit}")
         elif _turns(written) and _turns(asked.unit) and _turns(written) != _turns(asked.unit):
             # both are 1/s: no other equation can tell them apart
             hint = "1 Hz is 2*pi rad/s: write the value in the unit of the block."

@@ -36,12 +36,16 @@ class FlatParameter:
 
 @dataclass(frozen=True)
 class FlatAsked:
-    """A value of a block whose declaration says its unit, by the full name of the parameter."""
+    """A value of a block whose declaration says its unit, by the full name of the parameter.
+
+    The unit is `unit`, or that of the signal `like`.
+    """
 
     name: str
     formula: Expression
-    unit: str
+    unit: str = ""
     place: Location = Location()
+    like: Expression | None = None
 
 
 @dataclass(frozen=True)

@@ -311,6 +311,12 @@ class _Flattener:
                 default = block.port_defaults[port.name]
                 names[port.name] = rename(default, lambda name: names.get(name, Name(name)))
 
+        for parameter in block.parameters:
+            given = use.settings.get(parameter.name)
+            if isinstance(given, Value) and given.named and parameter.unit_of in names:
+                own, like = f"{path}.{parameter.name}", names[parameter.unit_of]
+                self.asked.append(FlatAsked(own, Name(own), place=given.place, like=like))
+
         def written(formula: Expression) -> Expression:
             full = rename(write_wires(formula, manies), lambda name: names.get(name, Name(name)))
             curve_tables(full, self.tables)

@@ -13,6 +13,7 @@ from tracewire.errors import Location, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Flow, Progress
 from tracewire.solve.core.codes import (
     BAD_RESET,
+    BEYOND,
     CARRIED,
     CHATTER,
     CHATTER_EVENTS,
@@ -46,11 +47,15 @@ def stopped(
     model: Model, t: float, x: Vector, what: str, hint: str, name: str = ""
 ) -> SimulationError:
     """The error of a run that cannot go on: time, values, block and remedy."""
-    states = zip(model.states, x.tolist(), strict=True)
-    values = ", ".join(f"{state} = {value:.6g}" for state, value in states)
     place = place_of(model, name) if name else Location()
-    text = f"the run stopped at t = {t:.9g} s: {what}; {values}"
+    text = f"the run stopped at t = {t:.9g} s: {what}; {_shown_states(model, x)}"
     return SimulationError([Problem(text, place, (), hint)])
+
+
+def _shown_states(model: Model, x: Vector) -> str:
+    """The values of the states (n,) in words."""
+    states = zip(model.states, x.tolist(), strict=True)
+    return ", ".join(f"{state} = {value:.6g}" for state, value in states)
 
 
 def too_long(model: Model, arrays: Arrays, what: str, hint: str) -> SimulationError:
@@ -155,6 +160,18 @@ def _carried(model: Model, progress: Progress) -> SimulationError:
     )
     hint = "Let no event set a position beyond a contact."
     return stopped(model, t, progress.x, what, hint, mode.signal)
+
+
+def starts_beyond(model: Model, progress: Progress, start: Vector, t: float) -> SimulationError:
+    """A run whose start (n,) at the time t lies beyond a contact, which no impact could reach."""
+    reset = model.lowered.resets[int(np.argmax(progress.overlooked == BEYOND))]
+    mode = model.modes[reset.trigger]
+    what = (
+        f"the start at t = {t:g} s lies beyond the contact of {reset.name}, where '{mode.text}' "
+        f"has crossed zero; {_shown_states(model, start)}"
+    )
+    hint = "Start on the side where the body can be."
+    return SimulationError([Problem(what, reset.place, (), hint)])
 
 
 def _chatter(model: Model, progress: Progress, guard: int) -> SimulationError:

@@ -12,6 +12,7 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Progress
 from tracewire.solve.core.codes import (
+    BEYOND,
     BUDGET,
     END,
     FINISHED,
@@ -34,6 +35,7 @@ from tracewire.solve.failures import (
     failure,
     hint_of_loop,
     place_of,
+    starts_beyond,
     too_long,
     too_many_events,
 )
@@ -126,6 +128,8 @@ class Integrator:
         progress.now[END] = end
         library()  # before the clock of the run begins
         self._go_on()
+        if (progress.overlooked == BEYOND).any():
+            raise starts_beyond(self.model, progress, self.problem.start, self.begin)
         if end < self.problem.span[1]:  # the core takes the stop for the end of all samples
             progress.ints[SAMPLED] = np.searchsorted(progress.times, end, side="right")
 
@@ -229,8 +233,9 @@ class Integrator:
             if not overlooked:
                 continue
             name = self.model.lowered.resets[reset].name
+            where = "beyond the contact" if overlooked == BEYOND else "on the guard"
             said.append(
-                f"the start at t = {t:g} s lies on the guard of {name}, which does not fire there"
+                f"the start at t = {t:g} s lies {where} of {name}, which does not fire there"
             )
         for i, since in enumerate(progress.undetermined.tolist()):
             if since < np.inf:

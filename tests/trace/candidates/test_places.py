@@ -61,6 +61,35 @@ def test_a_sum_before_a_body_is_a_place(body: str, x: str, v: str) -> None:
     assert (found.name, found.q, found.v) == ("net", f"body.{x}", f"body.{v}")
 
 
+ROTOR = """
+blocks:
+  phi: {type: integrator, of: omega}
+  omega: {type: integrator, of: alpha}
+  alpha: {type: expression, formula: FORMULA}
+  drag: {type: gain, of: omega, k: -1}
+  net: {type: sum, of: [drag]}
+  other: {type: sum, of: [phi]}
+parameters: {J: 2, k: 3}
+"""
+
+
+@pytest.mark.parametrize("formula", ["net/J", "-k*net/(J + phi**2)", "net/other", "k*(-net)"])
+def test_a_sum_to_which_an_expression_is_proportional_is_a_place(formula: str) -> None:
+    assert places(ROTOR.replace("FORMULA", formula)) == [
+        Place("net", "sum", "net", "phi", "omega", "alpha")
+    ]
+
+
+@pytest.mark.parametrize("formula", ["tanh(net)", "net*other", "net**2", "k/net", "net + 1"])
+def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
+    model = compile(read_text(ROTOR.replace("FORMULA", formula)))
+    found = find_places(model)
+    assert found == []
+    (said,) = describe_untried(model, found)
+    assert said.startswith("nothing is tried at sums: from net, other to a rate")
+    assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
+
+
 def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
     found = places(
         """

@@ -79,13 +79,14 @@ class Progress(NamedTuple):
     `stiff` holds the mode combinations that were found stiff. `recent` holds (time, mode) of the
     last events. `flights` holds, per mode, the last flight of its contact (inf: none) and whether
     it was too short to be resolved. `info` and `which` say what an error is about. `overlooked`
-    marks the resets whose guard is zero at the start and leaves it as if they fired. `given` are
-    the absolute tolerances that the user gave, 0 where `atol` follows from `largest`, what was seen
-    of each state. `sizes` (2n,) is work space, and behind it of what size each state has been of
-    late, at least `least`: one that passes through zero has the rounding errors of its size.
-    `undetermined` (M,): since when the guard of a mode has rested at zero where nothing decides
-    the mode although the rates differ with it; inf: never. `beyond` (n,) is what leads to the far
-    side of a guard that is to cross, where the rates are not defined beyond it; 0 elsewhere.
+    marks the resets whose guard is zero at the start and leaves it as if they fired (ON_GUARD), and
+    the impacts whose guard is beyond zero there (BEYOND). `given` are the absolute tolerances that
+    the user gave, 0 where `atol` follows from `largest`, what was seen of each state. `sizes` (2n,)
+    is work space, and behind it of what size each state has been of late, at least `least`: one
+    that passes through zero has the rounding errors of its size. `undetermined` (M,): since when
+    the guard of a mode has rested at zero where nothing decides the mode although the rates differ
+    with it; inf: never. `beyond` (n,) is what leads to the far side of a guard that is to cross,
+    where the rates are not defined beyond it; 0 elsewhere.
     """
 
     now: Vector

@@ -27,6 +27,7 @@ NEVER, WHILE_HELD, ALWAYS = range(3)  # in now[PACED]: when the pace bounds a st
 STEPS, REJECTED, STIFF_STEPS, METHOD, CURRENT, SUSPICIOUS, CALM = range(7)
 SAMPLED, LOGGED, STIFF_ROWS, RECENT, BUDGET, WARNINGS, STAGE, WATCHED = range(7, 15)
 NOT_UNIQUE = 1
+ON_GUARD, BEYOND = 1, 2  # in overlooked: where a start is
 POINTS, DROPPED = range(2)  # places in History.counts
 MOVES, NODE = range(2)  # places in History.along
 FLAGS = 5

@@ -6,7 +6,19 @@ import numpy as np
 
 from tracewire.solve.core import schedule
 from tracewire.solve.core.arrays import Vector, crossings_of, flow_of, plan_of, progress_of
-from tracewire.solve.core.codes import DOWN, FINISHED, FLOOR, MEMORY, SIGN, TIME, UP, T
+from tracewire.solve.core.codes import (
+    BEYOND,
+    DOWN,
+    FINISHED,
+    FLOOR,
+    IMPACT,
+    MEMORY,
+    ON_GUARD,
+    SIGN,
+    TIME,
+    UP,
+    T,
+)
 from tracewire.solve.core.flow import FREE, TIMED, evaluate, rates
 from tracewire.solve.core.modes import NOISE, levels, mode_value
 from tracewire.solve.core.readings import guard_rates, guard_values
@@ -55,7 +67,8 @@ def begin(core: int) -> int:
 
 @unit
 def _overlooked(core: int, t: float, x: Vector) -> None:
-    """Mark the resets whose guard is zero at the start and leaves it as if they fired."""
+    """Mark the resets whose guard is zero at the start and leaves it as if they fired, and the
+    impacts whose guard is beyond zero."""
     flow = flow_of(core)
     plan = plan_of(core)
     progress = progress_of(core)
@@ -67,8 +80,12 @@ def _overlooked(core: int, t: float, x: Vector) -> None:
         if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or flow.bound[i] != FREE:
             continue
         way = UP if flow.m[i] > 0.5 else DOWN
-        if abs(guards[i]) <= level[i] and plan.resets[reset, 1] == way:
-            progress.overlooked[reset] = 1
+        if plan.resets[reset, 1] != way:
+            continue
+        if abs(guards[i]) <= level[i]:
+            progress.overlooked[reset] = ON_GUARD
+        elif plan.resets[reset, 4] == IMPACT:
+            progress.overlooked[reset] = BEYOND
 
 
 @unit

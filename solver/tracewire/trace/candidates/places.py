@@ -9,7 +9,7 @@ from typing import Literal
 
 from tracewire.compile import Flat, FlatBlock, FlatState, Model
 from tracewire.diagram import Diagram, element_name, find_signal, split_index
-from tracewire.formula import Name, names_of
+from tracewire.formula import Call, Expression, Name, names_of
 from tracewire.trace.candidates.inside import (
     closed_subsystems,
     diagram_at,
@@ -65,8 +65,8 @@ class Place:
 def find_places(model: Model) -> list[Place]:
     """The places of a model: sums, then drives, then sensors.
 
-    Sums: from each state the search goes back through gains, divisions, sums and the ports of
-    subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
+    Sums: from each state the search goes back through gains, divisions, sums, expressions that are
+    proportional to one signal (`net/J`) and the ports of subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
     another place of the same state says nothing new and is left out. Where the diagram itself says
     which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
     name a coordinate alone, where nothing has a rate (see `untried`). A sum
@@ -107,7 +107,7 @@ def _shown(names: Sequence[str]) -> str:
 
 def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
     """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, at sums that
-    have no rate, or no coordinate, and in drives that a delay reads."""
+    have no rate, or no coordinate, in drives that a delay reads, and where no sum is a place."""
     diagram = model.diagram
     shut: dict[str, list[str]] = {}
     for path, why in closed_subsystems(diagram).items():
@@ -125,6 +125,13 @@ def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
         for name in _drives(model)
         if name in _delayed(model)
     ]
+    sums = [n for n, use in diagram.blocks.items() if use.type == "sum" and not use.row]
+    if sums and not any(place.kind == "sum" for place in places):
+        found.append(
+            f"nothing is tried at sums: from {_shown(sums)} to a rate the way is not through gains,"
+            " divisions and products alone; where one is the sum of what acts on a body, say so in "
+            "it, as in `place: {q: SIGNAL, v: SIGNAL}`"
+        )
     effects = diagram.library.effects()
     for place in places:
         missing = [s for s, signal in (("q", place.q), ("v", place.v)) if not signal]
@@ -292,11 +299,28 @@ def _sums_behind(flat: Flat, names: tuple[str, ...]) -> Iterator[tuple[str, int]
             continue
         seen.add(name)
         block = flat.blocks.get(name)
-        if block is not None and block.type not in PASSED:
-            continue
         if block is not None and block.type == "sum" and len(split_index(name)[1]) < 2:
             yield name, distance
-        queue.extend((read, distance + 1) for read in names_of(formula))
+        queue.extend((read, distance + 1) for read in _passed(flat, name, formula))
+
+
+def _passed(flat: Flat, name: str, formula: Expression) -> tuple[str, ...]:
+    """The names that a signal passes on: what a sum, a gain or a division reads, and the only
+    signal to which an expression is proportional, as `net/J`."""
+    block = flat.blocks.get(name)
+    if block is None or block.type in PASSED:
+        return names_of(formula)
+    factors = [factor for factor in _factors(formula) if factor.name in flat.signals]
+    return (factors[0].name,) if len(factors) == 1 and block.type == "expression" else ()
+
+
+def _factors(formula: Expression) -> Iterator[Name]:
+    """The names among the factors of a formula, not those that it is divided by."""
+    if isinstance(formula, Name):
+        yield formula
+    elif isinstance(formula, Call) and formula.function in ("*", "/", "neg"):
+        for factor in formula.arguments[: 2 if formula.function == "*" else 1]:
+            yield from _factors(factor)
 
 
 def _only_feeds(flat: Flat, name: str, state: str, nearest: dict[str, tuple[int, str]]) -> bool:
@@ -308,10 +332,9 @@ def _only_feeds(flat: Flat, name: str, state: str, nearest: dict[str, tuple[int,
         rates = [s for s in flat.states if name in names_of(s.rate)]
         if len(readers) != 1 or rates:
             return False
-        name = readers[0]
+        before, name = name, readers[0]
         if name in nearest and nearest[name][1] == state:
             return True
-        block = flat.blocks.get(name)
-        if block is not None and block.type not in PASSED:
+        if before not in _passed(flat, name, flat.signals[name]):
             return False
     return False
