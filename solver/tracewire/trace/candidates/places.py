@@ -66,13 +66,13 @@ def find_places(model: Model) -> list[Place]:
     """The places of a model: sums, then drives, then sensors.
 
     Sums: from each state the search goes back through gains, divisions, sums, expressions that are
-    proportional to one signal (`net/J`) and the ports of subsystems; the sums that it meets are places of the nearest state. A sum that only feeds
-    another place of the same state says nothing new and is left out. Where the diagram itself says
-    which sum is the place of a rate (`place: {q: ..., v: ...}`), that sum is the only one; it may
-    name a coordinate alone, where nothing has a rate (see `untried`). A sum
-    inside subsystems is a place where each is the only block of its type (see
-    `extensible_subsystems`). Each element of a sum of vectors is a place; sums of matrices are not
-    tried.
+    proportional to one signal (`net/J`) and the ports of subsystems; the sums that it meets are
+    places of the nearest state. A sum that only feeds another place of the same state says nothing
+    new and is left out. Where the diagram itself says which sum is the place of a rate (`place: {q:
+    ..., v: ...}`), that sum is the only one; it may name a coordinate alone, where nothing has a
+    rate (see `untried`). A sum inside subsystems is a place where each is the only block of its
+    type (see `extensible_subsystems`). Each element of a sum of vectors is a place; sums of
+    matrices are not tried.
 
     A sum of a row is no place: a row has one line, and each block of it other signals.
 
