@@ -9,6 +9,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 from tracewire.residual import Section
+from tracewire.trace.choose import prediction as preference
 from tracewire.trace.choose import safeguards, unseen, verdict
 from tracewire.trace.choose.choice import Entrant, choose, log_scores
 from tracewire.trace.choose.prediction import Prediction
@@ -231,6 +232,15 @@ def test_of_two_forms_of_one_model_that_with_a_physical_sign_is_named(
     assert other.chosen.names == {named}
     if named == DRY:
         assert [other.models[number].names for number, _ in other.choice.ties] == [{OFFSET}]
+
+
+@pytest.mark.parametrize(("on", "named"), [((CURVE,), DRY), ((), CURVE), ((CURVE, DRY), CURVE)])
+def test_a_law_on_its_upper_bound_gives_way_to_a_tie(
+    on: tuple[str, ...], named: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(preference, "upper_shapes", lambda names: set(names) & {*on})
+    found = prediction({(): 100, (DRIFT, CURVE): 4, (DRIFT, DRY): 4.3}, {CURVE: 2}).exchanging(1)
+    assert found.preferring_inner_shapes().chosen.names == {DRIFT, named}
 
 
 def test_a_start_led_astray_refuses_no_model(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from tracewire.trace.choose.finalists import _extend_without, _takes_all
 from tracewire.trace.choose.remainder import error_left
 from tracewire.trace.choose.verdict import _only_uncommon, is_slow_noise, judge_at_noise
 from tracewire.trace.options import TraceOptions
+from tracewire.trace.trials import bounds
 from tracewire.trace.trials.bounds import AtBound
 
 from benchmarks.rigs.records import generate
@@ -134,7 +135,7 @@ def test_at_the_noise_few_effects_take_most_of_what_was_above_it(
     monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
     monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
-    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [])
+    monkeypatch.setattr(verdict, "upper_shapes", lambda trial: [])
     found = judge_at_noise(search, declared, best)
     assert (found.verdict if found else None) == judged
 
@@ -168,7 +169,7 @@ def test_what_longer_windows_show_beside_named_effects_is_told(
         declared=declared,
         best=SimpleNamespace(reduced_chi2=longer, length=209, effects=short.effects),
     )
-    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [])
+    monkeypatch.setattr(verdict, "upper_shapes", lambda trial: [])
     monkeypatch.setattr(verdict, "is_slow_noise", lambda search, trial: False)
     monkeypatch.setattr(verdict, "is_at_noise", lambda search, trial: True)
     monkeypatch.setattr(verdict, "refine", lambda search, first, best: final)
@@ -223,7 +224,7 @@ def test_an_effect_with_a_shape_on_its_upper_bound_stands_for_another_law(
     bound: AtBound, told: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """At a lower bound it is a simpler law, as an exact one where its smoothing is 0."""
-    monkeypatch.setattr(verdict, "at_bounds", lambda trial: [bound])
+    monkeypatch.setattr(bounds, "at_bounds", lambda trial: [bound])
     found = verdict._describe_shape_on_bound(SimpleNamespace())  # type: ignore[arg-type]
     words = "stands for a law of another form: the pitch of wave @ torque sits on its upper bound"
     assert found == (words if told else "")

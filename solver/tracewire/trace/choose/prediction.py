@@ -25,6 +25,7 @@ from tracewire.trace.found import CandidateScore, SearchStep
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.search import Search
+from tracewire.trace.trials.bounds import upper_shapes
 from tracewire.trace.trials.trial import Trial
 
 Array = NDArray[np.float64]
@@ -92,6 +93,20 @@ class Prediction:
                     for a, b in zip(self.models[number].trials, chosen.trials, strict=True)
                 )
             ):
+                return self.exchanging(number)
+        return self
+
+    def preferring_inner_shapes(self) -> Prediction:
+        """The same with a tie of no more numbers in the place of a model that has a shape on its
+        upper bound, where one effect is exchanged and none of its shapes sits on one: a law at the
+        end of what the record can show stands for another one, which may be this."""
+        mine = self.entrants[self.choice.chosen]
+        if not upper_shapes(self.chosen.trials[-1]):
+            return self
+        for number, _ in self.choice.ties:
+            one = self.entrants[number]
+            simpler = one.exchanges(mine) and one.numbers <= mine.numbers
+            if simpler and not upper_shapes(self.models[number].trials[-1]):
                 return self.exchanging(number)
         return self
 

@@ -41,7 +41,7 @@ from tracewire.trace.missing.dependence import map_dependence
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.search.refinement import FinalModels, Rival, refine
 from tracewire.trace.search.search import Search
-from tracewire.trace.trials.bounds import at_bounds
+from tracewire.trace.trials.bounds import upper_shapes
 from tracewire.trace.trials.relative_error import relative_error
 from tracewire.trace.trials.trial import Trial
 
@@ -240,11 +240,10 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
 def _describe_shape_on_bound(trial: Trial) -> str:
     """In words, that a shape of an effect sits on its upper bound, beyond which the record tells
     nothing: the law has another form. '' where none does. At a lower bound it is a simpler law."""
-    for one in at_bounds(trial):
-        if one.kind == "shape" and one.upper:
-            shape = one.name.rpartition(".")[2]
-            what = f"the {shape} of {one.effect} sits on its upper bound"
-            return f"stands for a law of another form: {what}"
+    for one in upper_shapes(trial):
+        shape = one.name.rpartition(".")[2]
+        what = f"the {shape} of {one.effect} sits on its upper bound"
+        return f"stands for a law of another form: {what}"
     return ""
 
 
@@ -308,6 +307,7 @@ def _harmless(search: Search, prediction: Prediction) -> tuple[Prediction, str]:
         if not harm:
             pruned = prune_by_other_runs(search, prediction)
             simplest = simplify_by_unseen(search, pruned).preferring_signs()
+            simplest = simplest.preferring_inner_shapes()
             shortest = [min(search.short_length, max(lengths))]  # `safeguard` asks them, too
             harm = raises_unseen(search, declared, simplest.chosen.trials[-1], shortest)
             if not harm:

@@ -115,6 +115,11 @@ def at_bounds(trial: Trial) -> list[AtBound]:
     return sorted(found, key=lambda one: order.index(one.kind))
 
 
+def upper_shapes(trial: Trial) -> list[AtBound]:
+    """The shapes of effects that sit on their upper bound: the record tells nothing beyond it."""
+    return [one for one in at_bounds(trial) if one.kind == "shape" and one.upper]
+
+
 def describe_bounds(declared: Trial, best: Trial) -> list[str]:
     """What sits on bounds in the final model, and what does so only without its effects."""
     final = [one for one in at_bounds(best) if not one.exact]
