@@ -98,11 +98,11 @@ def test_check_tells_what_is_done_to_the_data_and_what_is_odd(call: Any, swing: 
     assert series["remarks"][-1] == "4 samples: a trace needs 40 at least"
 
 
-def test_check_tells_the_noise_that_is_declared_in_si(call: Any, swing: Path) -> None:
+def test_check_tells_the_declared_noise_in_the_unit_of_the_column(call: Any, swing: Path) -> None:
     """A sigma is in the unit of the column, which the header alone may say."""
     replaced(swing, "column: angle}", "column: angle, sigma: 0.1}")
     (swing.parent / "run_1.csv").write_text("t,angle [deg]\n0,1\n1,2\n1.5,3\n2,2\n")
-    assert "- theta: noise of σ = 0.001745 rad" in call("check", swing).out
+    assert "- theta: noise of σ = 0.1 deg" in call("check", swing).out
     (series,) = call("check", swing, "--json").data["measured"]
     assert series["sigma"]["theta"] == pytest.approx(np.radians(0.1))
 

@@ -8,42 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from residual.series_files import CSV, PLAIN, TOP, message, model_of, one, said, wave
 from scipy.io import savemat
-from tracewire.compile import Model, compile
-from tracewire.diagram import read, read_text
-from tracewire.errors import DataError
+from tracewire.compile import compile
+from tracewire.diagram import read_text
 from tracewire.residual import Measured, load_measured, with_measured_signals
-
-TOP = """\
-span: [0, 6]
-inputs: {drive: {unit: N m, default: 0}}
-parameters: {start: 0.5}
-blocks:
-  theta: {type: integrator, of: omega, unit: rad}
-  omega: {type: integrator, of: drive, unit: rad/s}
-presets: {high: {start: 0.75}}
-measured:
-"""
-CSV = "t,angle,u\n0.0,0,1\n0.5,90,2\n1.0,180,3\n1.5,-90,4\n"
-FREE = "time: t, start: {theta: free, omega: free}"
-PLAIN = "  run: {file: run.csv, time: t, signals: {theta: {column: angle, unit: deg}}}\n"
-
-
-@pytest.fixture
-def file(tmp_path: Path) -> Path:
-    (tmp_path / "run.csv").write_text(CSV, encoding="utf-8")
-    return tmp_path / "diagram.yaml"
-
-
-def model_of(file: Path, *series: str) -> Model:
-    file.write_text(TOP + "".join(series), encoding="utf-8")
-    return compile(read(file))
-
-
-def message(model: Model, *uses: str) -> str:
-    with pytest.raises(DataError) as caught:
-        load_measured(model, uses)
-    return str(caught.value)
 
 
 def test_columns_come_in_si(file: Path) -> None:
@@ -157,31 +126,6 @@ def test_the_problems_of_all_series_are_told_together(file: Path) -> None:
 
 
 # --- what a series may say of its file ----------------------------------------------------------
-
-
-def written(file: Path, content: str) -> None:
-    (file.parent / "run.csv").write_text(content, encoding="utf-8")
-
-
-def wave(file: Path, header: str = "t,angle,u", count: int = 400, step: float = 0.01) -> np.ndarray:
-    """A file with a swing of 30 degrees at 1 Hz, in degrees, and a ramp."""
-    t = np.arange(count) * step
-    rows = (f"{x:.6g},{30 * math.cos(2 * math.pi * x):.6f},{x:.6g}" for x in t)
-    written(file, "\n".join([header, *rows]))
-    return t
-
-
-def one(file: Path, more: str = "", theta: str = "{column: angle, unit: deg}") -> Measured:
-    comma = ", " if more else ""
-    text = f"  run: {{file: run.csv, signals: {{theta: {theta}}}{comma}{more}}}\n"
-    (loaded,) = load_measured(model_of(file, text))
-    return loaded
-
-
-def said(file: Path, more: str, theta: str = "{column: angle, unit: deg}") -> str:
-    comma = ", " if more else ""
-    text = f"  run: {{file: run.csv, signals: {{theta: {theta}}}{comma}{more}}}\n"
-    return message(model_of(file, text))
 
 
 def test_the_time_of_the_diagram_begins_at_zero(file: Path) -> None:
@@ -388,113 +332,3 @@ def test_a_matlab_file_is_a_series(file: Path) -> None:
     text = "  run: {file: run.mat, time: t, signals: {theta: {column: 'x_F[2]', unit: deg}}}\n"
     (run,) = load_measured(model_of(file, text))
     assert run.values["theta"] == pytest.approx(np.radians(np.sin(t)))
-
-
-# --- remarks ------------------------------------------------------------------------------------
-
-
-def test_a_record_in_order_has_no_remarks(file: Path) -> None:
-    wave(file)
-    assert one(file, FREE).remarks == ()
-
-
-def test_a_record_that_begins_elsewhere_and_names_no_start_is_remarked(file: Path) -> None:
-    """A trace looked for what makes up for a start, and named an offset and a constant force."""
-    wave(file)
-    (remark,) = one(file, "time: t").remarks
-    assert remark.startswith("theta begins at 0.5236, and the run is at 0 there (SI): where that")
-    shifted = "{column: angle, unit: deg, offset: {value: 30, fit: [0, 60]}}"
-    assert one(file, "time: t", shifted).remarks == ()
-
-
-def noisy(file: Path, header: str) -> None:
-    """A file with a swing in degrees whose sensor has a noise of 0.2 degrees."""
-    t = np.arange(1000) * 0.01
-    angle = 30 * np.cos(2 * np.pi * t) + np.random.default_rng(3).normal(0, 0.2, len(t))
-    written(file, "\n".join([header, *(f"{x:.6g},{y:.6f}" for x, y in zip(t, angle, strict=True))]))
-
-
-def test_a_noise_far_below_the_scatter_of_the_samples_is_remarked(file: Path) -> None:
-    """The header alone says that the column is in degrees: the 0.0035 rad were meant in rad."""
-    noisy(file, "t,angle [deg]")
-    (remark,) = one(file, FREE, "{column: angle, sigma: 0.0035}").remarks
-    start, _, rest = remark.partition("rad, and its samples scatter by ")
-    assert start == "theta is declared with a noise of sigma = 6.11e-05 "
-    assert float(rest.split()[0]) == pytest.approx(np.radians(0.2), rel=0.2)
-    assert remark.endswith(
-        "sigma is in the unit of the column; correct it, or leave it out to have it estimated"
-    )
-    assert one(file, FREE, "{column: angle, sigma: 0.1}").remarks == ()
-
-
-def test_a_noise_above_the_whole_signal_is_remarked(file: Path) -> None:
-    noisy(file, "t,angle [deg]")
-    (remark,) = one(file, FREE, "{column: angle, sigma: 60}").remarks
-    assert "and the whole signal varies by 0.37 rad (rms): sigma is in the unit" in remark
-    assert one(file, FREE, "{column: angle, sigma: 10}").remarks == ()
-
-
-def test_degrees_that_were_taken_for_radians_are_remarked(file: Path) -> None:
-    wave(file)
-    assert one(file, "time: t", "angle").remarks == (
-        "theta goes from -30 to 30 rad: is the column in degrees? Then say unit: deg",
-    )
-    assert one(file, "time: t", "{column: angle, gain: 160}").remarks == (), "a column of counts"
-
-
-def test_milliseconds_that_were_taken_for_seconds_are_remarked(file: Path) -> None:
-    wave(file, step=10.1)
-    (remark,) = one(file, "time: t").remarks
-    assert remark == (
-        "the record is 4029.9 s long, and the diagram's span 6 s: is the time in ms? "
-        "Then say time: {column: ..., unit: ms}"
-    )
-
-
-def test_a_record_beside_a_diagram_that_says_no_span_is_remarked(file: Path) -> None:
-    t = wave(file, step=4.1)
-    file.write_text((TOP + PLAIN).replace("span: [0, 6]\n", ""), encoding="utf-8")
-    (run,) = load_measured(compile(read(file)))
-    assert run.remarks == (
-        "the diagram says no span, so that a run takes 0 to 1 s, and the record is from 0 to "
-        f"{t[-1]:g} s: write span: [0, {t[-1]:g}]",
-    )
-
-
-def test_a_first_sample_far_from_the_begin_is_remarked(file: Path) -> None:
-    written(file, "t,angle\n" + "".join(f"{1700000000 + i / 8},{math.sin(i)}\n" for i in range(99)))
-    (remark,) = one(file, "time: t").remarks
-    assert remark.startswith("the first sample is at t = 1.7e+09 s, far from the begin of the diag")
-    assert one(file, "time: {column: t, zero: 1700000000}").remarks == ()
-
-
-def test_an_angle_from_another_line_is_remarked(file: Path) -> None:
-    t = wave(file)
-    rows = (f"{x:.6g},{math.pi + 0.1 * math.cos(6 * x):.6f}" for x in t)
-    written(file, "\n".join(["t,angle", *rows]))
-    (remark,) = one(file, "time: t", "angle").remarks
-    assert remark.startswith(
-        "theta begins at 3.242 rad, about pi from the diagram's start at 0 rad"
-    )
-
-
-def test_remarks_are_on_the_window_that_is_used(file: Path) -> None:
-    t = np.concatenate([np.arange(200), np.arange(300, 500)]) * 0.01
-    written(file, "\n".join(["t,angle", *(f"{x:.6g},{math.cos(6 * x):.6f}" for x in t)]))
-    assert one(file, FREE).remarks == (
-        "a gap in the time, where the step is 0.01 s: 1.01 s after t = 1.99 s",
-    )
-    assert one(file, f"{FREE}, to: 1.9").remarks == ()
-
-
-def test_an_input_that_rests_under_a_sign_is_remarked(file: Path) -> None:
-    rows = "".join(f"{i / 100:g},0,{max(i - 20, 0) / 100:g}\n" for i in range(100))
-    written(file, "t,angle,u\n" + rows)
-    text = TOP.replace("of: drive", "of: rub").replace(
-        "presets:", "  rub: {type: expression, formula: -sign(drive)}\npresets:"
-    )
-    series = PLAIN.replace("}}}", "}}, inputs: {drive: u}}")
-    file.write_text(text + series, encoding="utf-8")
-    (run,) = load_measured(compile(read(file)))
-    (remark,) = [remark for remark in run.remarks if "input" in remark]
-    assert remark.startswith("the input drive is exactly zero from 0 to 0.2 s: there 'rub' keeps")

@@ -98,6 +98,11 @@ def signal_remarks(
         return [f"{name} is constant: {y[0]:.6g}{shown} in every sample"]
     if len(y) < CHECK.fewest_samples:
         return []
+    codes = [] if exact else _codes(y)
+    if codes:
+        rest = ~np.isin(y, codes)
+        more = signal_remarks(name, t[rest], y[rest], unit, cleaned=cleaned, noise=noise)
+        return [*_coded(name, y, codes, shown), *more]
     levels = np.unique(y)
     found = [
         *([] if exact else _clipped(name, y, levels, shown)),
@@ -107,6 +112,32 @@ def signal_remarks(
         return found
     made = [] if len(levels) < CHECK.fewest_levels else _from_lower_rate(name, t, y)
     return [*found, *(made or _coarse(name, y, levels, shown, noise))]
+
+
+def _codes(y: Vector) -> list[float]:
+    """The extreme values at which several samples are exactly, far from all others: numbers by
+    which a logger says that it has no value."""
+    found = []
+    for code in (float(y.min()), float(y.max())):
+        here = y == code
+        rest = y[~here]
+        if np.count_nonzero(here) < CHECK.fewest_codes or len(rest) < len(y) / 2:
+            continue
+        away = float(np.min(np.abs(rest - code)))
+        if np.ptp(rest) > 0 and away > CHECK.spike * float(np.ptp(rest)):
+            found.append(code)
+    return found
+
+
+def _coded(name: str, y: Vector, codes: list[float], unit: str) -> list[str]:
+    """What to say of such codes."""
+    rest = y[~np.isin(y, codes)]
+    return [
+        f"{name} is exactly {code:.9g}{unit} in {np.count_nonzero(y == code)} samples, far from "
+        f"all others, which are between {rest.min():.4g} and {rest.max():.4g}{unit}: does the "
+        f"number stand for no value? Then say format: {{missing: {code:.9g}}}"
+        for code in codes
+    ]
 
 
 def _clipped(name: str, y: Vector, levels: Vector, unit: str) -> list[str]:

@@ -88,6 +88,8 @@ class CheckLimits:
     """The part of them that keeps to it."""
     spike: Final[float] = 10.0
     """Times the range of nearly all samples is one away that stands alone."""
+    fewest_codes: Final[int] = 2
+    """Samples at exactly one value, as far away, are a code and no spike."""
     nearly_all: Final[tuple[float, float]] = (0.02, 0.98)
     """The quantiles between which these lie."""
     most_levels: Final[int] = 500

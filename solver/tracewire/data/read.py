@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -52,6 +52,7 @@ def read_columns(
     where: Mapping[str, str | float] | None = None,
     in_any_order: bool = False,
     sparse: Collection[str] = (),
+    missing: Sequence[float] = (),
 ) -> Columns:
     """Read the named columns of a file.
 
@@ -69,6 +70,7 @@ def read_columns(
     where: column -> the text or number that a row must have there; other rows are left out.
     in_any_order: the time need not increase from row to row.
     sparse: series that may lack a value in some rows, NaN then: a blank cell, NaN, NA or null.
+    missing: numbers that stand for no value in any column but the time, as the file has them.
 
     A header is found exactly, or without a unit in brackets: "t" finds "t [s]" and "t (s)". Lines
     before the header that are no part of the table are left out, with a remark. Every other number
@@ -100,6 +102,7 @@ def read_columns(
         comment,
         in_any_order,
         frozenset(place for place, name in enumerate(columns) if name in sparse),
+        tuple(missing),
     )
     found = known.columns(content, path, request, place)
     return columns_of(found, columns, file, every)
@@ -189,6 +192,7 @@ def read_record(
     where: Mapping[str, str | float] | None = None,
     in_any_order: bool = False,
     sparse: Collection[str] = (),
+    missing: Sequence[float] = (),
     place: Location = Location(),
 ) -> Record:
     """Read the named columns of a file as a record in SI.
@@ -208,6 +212,7 @@ def read_record(
         where=where,
         in_any_order=in_any_order,
         sparse=sparse,
+        missing=missing,
     )
     unit = "s" if every is not None else time_unit
     return record_of(read, units or {}, unit, raw, place)

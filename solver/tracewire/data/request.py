@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
@@ -20,8 +21,8 @@ NO_VALUE = "Leave out the rows without a value."
 
 class Request(NamedTuple):
     """The wanted columns, which of them is the time, the values that other columns of a row must
-    have, the dialect, whether the rows may stand in any order, and the places among the wanted
-    columns of those that may lack a value in some rows, NaN then."""
+    have, the dialect, whether the rows may stand in any order, the places among the wanted columns
+    of those that may lack a value in some rows, NaN then, and the numbers that stand for none."""
 
     wanted: tuple[str, ...]
     clock: int | None
@@ -30,6 +31,7 @@ class Request(NamedTuple):
     comment: str = "#"
     in_any_order: bool = False
     sparse: frozenset[int] = frozenset()
+    missing: tuple[float, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -48,6 +50,19 @@ class Found(NamedTuple):
     lines: NDArray[np.int64]
     remarks: tuple[str, ...] = ()
     since: str = ""
+
+
+def without_missing(found: Found, request: Request) -> Found:
+    """What was found with NaN in the place of numbers that stand for no value, but in the time."""
+    if not request.missing:
+        return found
+    series = [
+        column
+        if place == request.clock
+        else np.where(np.isin(column, request.missing), nan, column)
+        for place, column in enumerate(found.series)
+    ]
+    return found._replace(series=series)
 
 
 def problems_of(found: Found, request: Request, file: str) -> list[Problem]:

@@ -22,6 +22,7 @@ from tracewire.data.request import (
     problems_of,
     raise_first,
     too_few,
+    without_missing,
 )
 from tracewire.data.table import (
     Dialect,
@@ -103,6 +104,7 @@ def columns_of_lines(lines: Sequence[str], file: str, request: Request, place: L
         np.array(reading.lines, dtype=np.int64),
         since=since,
     )
+    read = without_missing(read, request)
     reading.finish(problems_of(read, request, file))
     if request.where and not reading.lines:
         raise none_left(request.where, reading.seen, file, place)

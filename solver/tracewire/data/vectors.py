@@ -19,6 +19,7 @@ from tracewire.data.request import (
     problems_of,
     raise_first,
     too_few,
+    without_missing,
 )
 from tracewire.data.table import matches, split_unit, unknown_column
 from tracewire.errors import DataError, Location, Problem
@@ -121,6 +122,7 @@ def found_of(
     names = [f"'{name}'" for name in request.wanted]
     lines = np.zeros(int(kept.sum()), dtype=np.int64)
     found = Found(series, list(units[:count]), names, lines, since=since)
+    found = without_missing(found, request)
     problems = problems_of(found, request, file)
     raise_first(problems, len(problems), file)
     return found

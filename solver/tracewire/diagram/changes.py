@@ -20,7 +20,7 @@ from tracewire.diagram.channels import unit_of_term
 from tracewire.diagram.diagram import Array, BlockUse, Diagram, Points, Value, Wire
 from tracewire.diagram.edit import add_addend, many_port, with_addend, with_bodies
 from tracewire.diagram.edit_own import add_own, declared_parameter, free_starts, having_free_starts
-from tracewire.diagram.edit_sensors import add_sensor, column_factor, series_of
+from tracewire.diagram.edit_sensors import add_sensor, series_of
 from tracewire.diagram.edit_values import apply_values, patch_values
 from tracewire.diagram.names import find_signal, split_index
 from tracewire.diagram.owned import apply_own, patch_own
@@ -322,7 +322,7 @@ def _with_sensor_term(diagram: Diagram, change: AddSensorTerm) -> Diagram:
         channel = series.channels[signal]
         unit = Unit(channel.unit, channel.factor) if channel.declared else Unit("", 1.0)
         unit = unit_of_term(change.kind, unit)
-        factor = SENSOR_TERMS[change.kind].factor(column_factor(series, signal))
+        factor = SENSOR_TERMS[change.kind].factor(series.unit_of(series.channels[signal])[1])
         number, fit = as_written(change.value, factor, change.fit)
         fit = fit and (fit[0] * unit.factor, fit[1] * unit.factor)
         term: dict[str, Any] = {

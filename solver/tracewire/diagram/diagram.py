@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from tracewire.errors import Location
-from tracewire.formula import Expression
+from tracewire.data import column_unit
+from tracewire.errors import FormulaError, Location
+from tracewire.formula import Expression, read_unit
 from tracewire.library import Effect, Library
 
 Use = Literal["train", "gate", "validate"]
@@ -185,11 +186,13 @@ class Cleaning:
 
 @dataclass(frozen=True)
 class Format:
-    """How the file of a record is written: what is None is found from its first rows."""
+    """How the file of a record is written: what is None is found from its first rows. `missing` are
+    numbers that stand for no value there."""
 
     delimiter: str | None = None
     decimal: str | None = None
     comment: str = "#"
+    missing: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -221,6 +224,18 @@ class Series:
     clean: tuple[Cleaning, ...] = ()
     format: Format = Format()
     parameters: Mapping[str, Value] = field(default_factory=dict)
+
+    def unit_of(self, channel: Channel) -> tuple[str, float]:
+        """The unit of the column of a channel and its factor to SI: as declared, else that of the
+        file's header; no text and 1 where neither says one, or a step of `clean` gives it."""
+        calibrated = {s.options.get("signal") for s in self.clean if s.step == "calibrate"}
+        if channel.declared is not None or channel.signal in calibrated or not channel.column:
+            return channel.declared or "", channel.factor
+        text = column_unit(self.file, channel.column, self.format.delimiter)
+        try:
+            return text, read_unit(text).factor
+        except FormulaError:  # brackets in the header that hold no unit
+            return "", 1.0
 
 
 @dataclass(frozen=True)
@@ -368,9 +383,12 @@ class Diagram:
         show the signal; else its `unit` in SI.
         """
         every = [{**series.inputs, **series.channels} for series in self.measured.values()]
-        channels = [known[signal] for known in every if signal in known]
-        declared = {(channel.declared or "", channel.factor) for channel in channels}
-        if len(declared) == 1 and (found := declared.pop())[0]:
+        units = {
+            series.unit_of(known[signal])
+            for series, known in zip(self.measured.values(), every, strict=True)
+            if signal in known
+        }
+        if len(units) == 1 and (found := units.pop())[0]:
             return found
         own = self.blocks.get(signal) or self.inputs.get(signal)
         return (own.shown.unit, own.shown.factor) if own and own.shown.unit else (unit, 1.0)

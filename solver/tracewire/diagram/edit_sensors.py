@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from tracewire.data import column_unit
 from tracewire.diagram.diagram import Diagram, Series, Value
 from tracewire.diagram.names import find_recorded
 from tracewire.diagram.override import localise
@@ -13,8 +12,8 @@ from tracewire.diagram.rewrite import as_written, bounds, digits, reread
 from tracewire.diagram.source_map import SourceMap
 from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.text_edits import TextEdit, entry_last, replace_node
-from tracewire.errors import FormulaError, OptionError, unknown
-from tracewire.formula import Number, number_text, read_unit
+from tracewire.errors import OptionError, unknown
+from tracewire.formula import Number, number_text
 from tracewire.library import SENSOR_TERMS
 
 
@@ -39,7 +38,9 @@ def add_sensor(
     changes = []
     for series in having:
         node = _channel(diagram, root, series, full)
-        text = _value_text(value, fit, SENSOR_TERMS[kind].factor(column_factor(series, full)))
+        text = _value_text(
+            value, fit, SENSOR_TERMS[kind].factor(series.unit_of(series.channels[full])[1])
+        )
         changes.append(_with_number(diagram.text, node, kind, text))
     return reread(diagram, changes)
 
@@ -157,7 +158,7 @@ def factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
     """The factor to SI of a number of a sensor as it stands in the text."""
     if known.unit or series.channels[signal].declared is not None:
         return known.factor
-    return known.factor * SENSOR_TERMS[kind].factor(column_factor(series, signal))
+    return known.factor * SENSOR_TERMS[kind].factor(series.unit_of(series.channels[signal])[1])
 
 
 def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
@@ -185,15 +186,3 @@ def _with_number(text: str, channel: Node, kind: str, number: str) -> TextEdit:
     if kind in channel.values:
         return replace_node(channel.values[kind], number)
     return entry_last(text, channel, kind, number)
-
-
-def column_factor(series: Series, signal: str) -> float:
-    """The factor to SI of a column: by its unit, else by that of the file's header."""
-    channel = series.channels[signal]
-    calibrated = {step.options.get("signal") for step in series.clean if step.step == "calibrate"}
-    if channel.declared is not None or signal in calibrated:
-        return channel.factor
-    try:
-        return read_unit(column_unit(series.file, channel.column, series.format.delimiter)).factor
-    except FormulaError:  # brackets in the header that hold no unit
-        return 1.0

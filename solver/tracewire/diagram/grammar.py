@@ -150,6 +150,9 @@ FORMAT = {
     "delimiter": Key(TEXT, "What stands between two columns: ';', ',', tab or blank."),
     "decimal": Key(Text((".", ",")), "The decimal sign."),
     "comment": Key(TEXT, "What a line of comment begins with."),
+    "missing": Key(
+        Listed(Number(), alone=True), "Numbers that stand for no value, as in the file: -9999."
+    ),
 }
 COLUMN = {
     "column": Key(TEXT, "The column of the file.", required=True),

@@ -225,7 +225,7 @@ class _Series:
         return found
 
     def format(self) -> Format:
-        """`format`: delimiter, decimal sign and comment, where they are not found by themselves."""
+        """`format`: delimiter, decimal sign, comment, and the numbers that stand for no value."""
         node = self.entries.values.get("format")
         if node is None:
             return Format()
@@ -237,6 +237,7 @@ class _Series:
         texts = {
             name: given.text if isinstance(given, Scalar) else body.text(given, f"'{name}'")
             for name, _, given in entries
+            if name != "missing"
         }
         if texts.get("decimal") not in (None, ".", ","):
             what, place = "'decimal' is '.' or ','", body.place(entries.values["decimal"])
@@ -247,7 +248,13 @@ class _Series:
         if delimiter is not None and (len(delimiter) != 1 or delimiter.isalnum()):
             what, place = "'delimiter' is one character", body.place(entries.values["delimiter"])
             body.problems.add(what, place, (), "Write ';', ',', tab or blank.")
-        return Format(delimiter, texts.get("decimal"), texts.get("comment") or "#")
+        codes = entries.values.get("missing", Items((), self.body.place(node), 0, 0, True))
+        read = [
+            body.number(code, f"'missing' of {self.what}")
+            for code in (codes.items if isinstance(codes, Items) else (codes,))
+        ]
+        missing = tuple(code for code in read if code is not None)
+        return Format(delimiter, texts.get("decimal"), texts.get("comment") or "#", missing)
 
     def preset(self) -> str:
         node = self.entries.values.get("preset")

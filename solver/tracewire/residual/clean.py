@@ -35,6 +35,7 @@ def read_series(series: Series) -> Record:
         where=series.where,
         in_any_order=is_sorted(series),
         sparse=tuple(name for name in channels if name in series.channels),
+        missing=form.missing,
         place=series.place,
     )
 

@@ -273,6 +273,9 @@ class RemarkLimits:
     """Seconds, three years: a time that is larger counts from a date."""
     near_pi: Final[float] = 0.3
     """In rad: a first sample so near to pi from the start counts from the other end."""
+    near_turn: Final[float] = 0.6
+    """In rad, a tenth of a turn: a step of an angle so near to a turn is one, where most steps are
+    smaller than this."""
     elsewhere: Final[float] = 0.2
     """Of the range of a measured state: a first sample so far from the run's is another start."""
     resting: Final[int] = 5

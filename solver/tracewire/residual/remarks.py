@@ -14,10 +14,12 @@ from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, Problem
 from tracewire.formula import evaluate, names_of, quantity_hint, read_unit
-from tracewire.residual.endings import alike
+from tracewire.residual.endings import alike, endings
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.residual.limits import INPUT, REMARK
 from tracewire.residual.noise_estimate import noise_of_signal
+
+Vector = NDArray[np.float64]
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:
@@ -60,6 +62,7 @@ def remarks_of(
         found += signal_remarks(
             name, read.t, column / factor, unit, exact=exact, cleaned=cleaned, noise=noise / factor
         )
+    found += _on_names(model, series, read)
     about_units = _on_span(model, series, read, values, zero) + _on_angles(
         model, series, read, values
     )
@@ -68,6 +71,43 @@ def remarks_of(
     found += _on_rest(model, series, read)
     found += _on_hold(series, read)
     return tuple(found)
+
+
+def _on_names(model: Model, series: Series, read: Record) -> list[str]:
+    """Columns of which neither the diagram nor the header says a unit, and whose names end with
+    another one than that in which they are read."""
+    columns = [("the time", series.time.column, "s", series.time.unit or "")]
+    for name, channel in {**series.inputs, **series.channels}.items():
+        port = model.diagram.inputs.get(name)
+        unit = port.unit if port is not None else model.flat.units.get(name, "")
+        dimensionless = channel.declared == ""
+        said = "1" if dimensionless else series.unit_of(channel)[0]
+        columns.append((name, channel.column, unit, said))
+    found = []
+    for name, column, unit, said in columns:
+        if said or (name == "the time" and read.time_unit.text != "s"):
+            continue
+        told = next((u for _, u in endings(column) if unit and alike(u, unit)), "")
+        if told and read_unit(told).factor != 1.0:
+            found.append(
+                f"{name}: the column '{column}' is read in {unit}; where its name tells its unit, "
+                f"say unit: {told}"
+            )
+    return found
+
+
+def _on_wraps(name: str, t: Vector, column: Vector, unit: str, factor: float) -> list[str]:
+    """An angle (N,) in SI that jumps by a turn from one sample to the next, once at least, and
+    moves little in others: it is not said to come round."""
+    steps = np.abs(np.diff(column))
+    near = np.abs(steps - 2 * np.pi) < REMARK.near_turn
+    if not near.any() or float(np.median(steps)) > REMARK.near_turn:
+        return []
+    turn = 2 * np.pi / factor
+    return [
+        f"{name} jumps by about {turn:.4g} {unit} {int(near.sum())} times, first at "
+        f"t = {t[1:][near][0]:.6g} s: does the angle come round? Then say modulo: {turn:.4g}"
+    ]
 
 
 def _on_angles(
@@ -80,7 +120,12 @@ def _on_angles(
         angle = given.text or model.flat.units.get(name, "")
         if name not in read.columns or angle != "rad":
             continue
-        column = read.columns[name]
+        column, (shown, factor) = read.columns[name], _unit_of_column(series, read, name)
+        period = series.channels[name].modulo
+        if period is None:
+            found += _on_wraps(name, read.t, column, shown or "rad", factor)
+        elif shown == "deg" and abs(period / factor - 2 * math.pi) < REMARK.near_turn / 10:
+            found.append(f"{name} has modulo: {period / factor:.4g} in deg: a turn is modulo: 360")
         low, high = usual_range(column)
         scaled = series.channels[name].gain is not None  # a column of counts, or of volts
         said = bool(given.text) or scaled
@@ -105,11 +150,11 @@ def _channel_of(series: Series, name: str) -> Channel | None:
 
 
 def _unit_of_column(series: Series, read: Record, name: str) -> tuple[str, float]:
-    """The unit that a diagram gives a column, and its factor to SI; else that in SI."""
+    """The unit of a column, as the diagram or the file's header writes it, and its factor to SI;
+    else that in SI."""
     channel = _channel_of(series, name)
-    if channel is None or not channel.declared:
-        return read.unit(name).text, 1.0
-    return channel.declared, channel.factor
+    unit, factor = ("", 1.0) if channel is None else series.unit_of(channel)
+    return (unit, factor) if unit else (read.unit(name).text, 1.0)
 
 
 def _declared_noise(series: Series, read: Record, name: str) -> float:
@@ -129,7 +174,7 @@ def _without_outliers(series: Series) -> set[str]:
     return found
 
 
-def _is_command(channel: Channel | None, column: NDArray[np.float64]) -> bool:
+def _is_command(channel: Channel | None, column: Vector) -> bool:
     """Whether a column is an input whose values act as they stand there, steps and all."""
     return channel is not None and (
         channel.hold == "previous" or channel.sigma == 0.0 or looks_held(column)
@@ -165,9 +210,10 @@ def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
         column = read.columns.get(name)
         if channel.sigma is None or column is None:
             continue
-        sigma = channel.sigma * factor_of_column(read, name, channel)
-        unit = read.unit(name).text or model.flat.units.get(name, "")
-        seen, spread = noise_of_signal(column, read.t), float(np.std(column))
+        unit, factor = _unit_of_column(series, read, name)
+        unit = unit or model.flat.units.get(name, "")
+        sigma = channel.sigma * factor_of_column(read, name, channel) / factor
+        seen, spread = noise_of_signal(column / factor, read.t), float(np.std(column / factor))
         if seen.is_sure and seen.low > REMARK.noisier * sigma:
             what = f"its samples scatter by {seen.level:.3g} {unit}".rstrip()
             what += f", {seen.level / sigma:.2g} times that"
@@ -183,7 +229,7 @@ def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
     return found
 
 
-def begins_elsewhere(signal: str, measured: NDArray[np.float64], simulated: float) -> str:
+def begins_elsewhere(signal: str, measured: Vector, simulated: float) -> str:
     """What to say of a measured state (N,) whose run begins elsewhere, in SI; '' where it does
     not."""
     if not abs(measured[0] - simulated) > REMARK.elsewhere * float(np.ptp(measured)):

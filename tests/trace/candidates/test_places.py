@@ -12,7 +12,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.places import Place, describe_untried, find_places
+from tracewire.trace.candidates.places import Place, find_places
 from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.probes import add_probes
@@ -78,16 +78,6 @@ def test_a_sum_to_which_an_expression_is_proportional_is_a_place(formula: str) -
     assert places(ROTOR.replace("FORMULA", formula)) == [
         Place("net", "sum", "net", "phi", "omega", "alpha")
     ]
-
-
-@pytest.mark.parametrize("formula", ["tanh(net)", "net*other", "net**2", "k/net", "net + 1"])
-def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
-    model = compile(read_text(ROTOR.replace("FORMULA", formula)))
-    found = find_places(model)
-    assert found == []
-    (said,) = describe_untried(model, found)
-    assert said.startswith("nothing is tried at sums: from net, other to a rate")
-    assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
 
 
 def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:
@@ -346,20 +336,6 @@ def test_what_an_effect_would_change_elsewhere_is_no_place(old: str, new: str) -
     assert not [place for place in places(CART.replace(old, new)) if place.kind == "sum"]
 
 
-def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
-    text = """
-        blocks:
-          x: {type: integrator, of: v}
-          v: {type: integrator, of: f_1}
-          f: {type: sum, of: [x, -v], replicate: 2}
-        """
-    model = compile(read_text(text), backend="quick")
-    assert find_places(model) == []
-    assert describe_untried(model, []) == [
-        "nothing is tried at the sums 'f': they are a row of blocks"
-    ]
-
-
 SHALLOW = "\n          body: {type: cart, u: u, w: -w}\n        subsystems:"
 
 
@@ -440,70 +416,6 @@ def test_the_diagram_says_the_coordinate_of_a_sum_and_that_one_only() -> None:
         """
     )
     assert (place.q, place.v) == ("x", "")
-
-
-def test_what_cannot_be_tried_at_a_place_is_said() -> None:
-    model = compile(
-        read_text(
-            """
-            inputs: {u: {default: 0}}
-            blocks:
-              h: {type: integrator, of: flow}
-              flow: {type: sum, of: [u, -h]}
-              x: {type: sum, of: [u], place: {q: u}}
-            """
-        )
-    )
-    flow, position = describe_untried(model, find_places(model))
-    assert "'x' has no rate: " in flow + position
-    assert (
-        "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
-        in position + flow
-    )
-    assert "'flow' has no coordinate: " in position + flow
-
-
-def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
-    body = """
-    outputs: [x]
-    blocks:
-      x: {type: integrator, of: v}
-      v: {type: integrator, of: force}
-      force: {type: sum, of: [-x]}
-"""
-    (tmp_path / "parts.yaml").write_text(f"subsystems:\n  shipped:{body}", encoding="utf-8")
-    file = tmp_path / "top.yaml"
-    twice = body.replace("    outputs", "    variants: {a: {}, b: {}}\n    outputs")
-    file.write_text(
-        "include: parts.yaml\nparameters: {law: 1}\nsubsystems:\n"
-        f"  own:{body}  pair:{body}  link:{body}  law_of:{twice}"
-        """blocks:
-  own: {type: own}
-  left: {type: pair}
-  right: {type: pair}
-  chain: {type: link, replicate: 3}
-  part: {type: shipped}
-  chosen: {type: law_of, variant: law}
-""",
-        encoding="utf-8",
-    )
-    model = compile(read(file))
-    assert describe_untried(model, find_places(model)) == [
-        "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
-        "nothing is tried at sums inside 'chain': it is a row of blocks",
-        "nothing is tried at sums inside 'chosen': a parameter chooses its body",
-    ]
-
-
-def test_a_place_with_both_is_not_talked_about() -> None:
-    text = """
-        blocks:
-          x: {type: integrator, of: v}
-          v: {type: integrator, of: force}
-          force: {type: sum, of: [-x]}
-        """
-    model = compile(read_text(text))
-    assert describe_untried(model, find_places(model)) == []
 
 
 def test_a_level_overflows_where_there_is_no_coordinate() -> None:

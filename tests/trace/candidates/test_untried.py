@@ -1,0 +1,109 @@
+"""Places at which a trace tries nothing are said in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tracewire.compile import compile
+from tracewire.diagram import read, read_text
+from tracewire.trace.candidates.places import describe_untried, find_places
+
+ROTOR = """
+blocks:
+  phi: {type: integrator, of: omega}
+  omega: {type: integrator, of: alpha}
+  alpha: {type: expression, formula: FORMULA}
+  drag: {type: gain, of: omega, k: -1}
+  net: {type: sum, of: [drag]}
+  other: {type: sum, of: [phi]}
+parameters: {J: 2, k: 3}
+"""
+
+
+@pytest.mark.parametrize("formula", ["tanh(net)", "net*other", "net**2", "k/net", "net + 1"])
+def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
+    model = compile(read_text(ROTOR.replace("FORMULA", formula)))
+    found = find_places(model)
+    assert found == []
+    (said,) = describe_untried(model, found)
+    assert said.startswith("nothing is tried at sums: from net, other to a rate")
+    assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
+
+
+def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
+    text = """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: f_1}
+          f: {type: sum, of: [x, -v], replicate: 2}
+        """
+    model = compile(read_text(text), backend="quick")
+    assert find_places(model) == []
+    assert describe_untried(model, []) == [
+        "nothing is tried at the sums 'f': they are a row of blocks"
+    ]
+
+
+def test_what_cannot_be_tried_at_a_place_is_said() -> None:
+    model = compile(
+        read_text(
+            """
+            inputs: {u: {default: 0}}
+            blocks:
+              h: {type: integrator, of: flow}
+              flow: {type: sum, of: [u, -h]}
+              x: {type: sum, of: [u], place: {q: u}}
+            """
+        )
+    )
+    flow, position = describe_untried(model, find_places(model))
+    assert "'x' has no rate: " in flow + position
+    assert (
+        "are not tried there; name it, as in `place: {v: SIGNAL}`, where there is one"
+        in position + flow
+    )
+    assert "'flow' has no coordinate: " in position + flow
+
+
+def test_subsystems_that_get_no_effect_are_said(tmp_path: Path) -> None:
+    body = """
+    outputs: [x]
+    blocks:
+      x: {type: integrator, of: v}
+      v: {type: integrator, of: force}
+      force: {type: sum, of: [-x]}
+"""
+    (tmp_path / "parts.yaml").write_text(f"subsystems:\n  shipped:{body}", encoding="utf-8")
+    file = tmp_path / "top.yaml"
+    twice = body.replace("    outputs", "    variants: {a: {}, b: {}}\n    outputs")
+    file.write_text(
+        "include: parts.yaml\nparameters: {law: 1}\nsubsystems:\n"
+        f"  own:{body}  pair:{body}  link:{body}  law_of:{twice}"
+        """blocks:
+  own: {type: own}
+  left: {type: pair}
+  right: {type: pair}
+  chain: {type: link, replicate: 3}
+  part: {type: shipped}
+  chosen: {type: law_of, variant: law}
+""",
+        encoding="utf-8",
+    )
+    model = compile(read(file))
+    assert describe_untried(model, find_places(model)) == [
+        "nothing is tried at sums inside 'left', 'right': several blocks are made from 'pair'",
+        "nothing is tried at sums inside 'chain': it is a row of blocks",
+        "nothing is tried at sums inside 'chosen': a parameter chooses its body",
+    ]
+
+
+def test_a_place_with_both_is_not_talked_about() -> None:
+    text = """
+        blocks:
+          x: {type: integrator, of: v}
+          v: {type: integrator, of: force}
+          force: {type: sum, of: [-x]}
+        """
+    model = compile(read_text(text))
+    assert describe_untried(model, find_places(model)) == []
