@@ -179,6 +179,34 @@ blocks:
     assert message in "".join(found)
 
 
+@pytest.mark.parametrize(
+    ("unit", "gain", "told_of"),
+    [
+        ("'%'", "N/%", ""),
+        ("'%'", "N", ""),
+        ("'%'", "kg", "'u' (line 4) is in kg"),
+        ("V", "kg", "'u' (line 4)"),
+    ],
+)
+def test_a_signal_in_percent_is_a_plain_number(unit: str, gain: str, told_of: str) -> None:
+    found = told(f"""\
+inputs: {{spool: {{unit: {unit}, default: 0}}}}
+parameters: {{k: {{value: 3, unit: {gain}}}, F: {{value: 1, unit: N}}}}
+blocks:
+  u: {{type: gain, of: spool, k: k}}
+  load: {{type: constant, value: F, unit: N}}
+  net: {{type: sum, of: [u, load]}}
+""")
+    assert bool(found) == bool(told_of)
+    assert told_of in "".join(found)
+
+
+def test_a_parameter_in_percent_is_a_plain_number() -> None:
+    text = "parameters: {p: {value: 3, unit: '%'}, m: {value: 1, unit: kg}}\nrequire: [p < m]\n"
+    (found,) = told(text + "blocks: {x: {type: constant, value: m}}\n")
+    assert "they cannot be added or compared" in found
+
+
 @pytest.mark.parametrize("condition", ["m > k", "m*k > k**2"])
 def test_what_a_diagram_requires_compares_like_with_like(condition: str) -> None:
     (found,) = told(f"require: [{condition}]\n" + BODY)

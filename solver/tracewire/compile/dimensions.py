@@ -19,6 +19,7 @@ from tracewire.formula import (
     Term,
     dimension_of,
     dimension_text,
+    read_unit,
     times,
     to_text,
     unit_term,
@@ -63,6 +64,8 @@ class _Units:
             dimension = dimension_of(unit)
             if dimension is not None:
                 self.known[OPEN + name] = dimension
+            elif name in flat.shown and _is_part(flat.shown[name].unit):
+                self.known[OPEN + name] = {}
 
     def problems(self) -> list[Problem]:
         for name, parameter in self.flat.parameters.items():
@@ -106,7 +109,7 @@ class _Units:
             return {}
         parameter = self.flat.parameters.get(name)
         if parameter is not None:
-            own = dimension_of(parameter.unit)
+            own = {} if _is_part(parameter.written) else dimension_of(parameter.unit)
             number = isinstance(parameter.formula, Number)
             return own if own is not None or number else self.term(parameter.formula)
         if name in self.states or name in self.flat.signals or OPEN + name in self.known:
@@ -214,6 +217,11 @@ class _Units:
         """Where the diagram has a name; nowhere for an input."""
         tables = (self.flat.parameters, self.flat.blocks, self.states)
         return next((table[name].place for table in tables if name in table), Location())
+
+
+def _is_part(unit: str) -> bool:
+    """Whether a user's unit says that a value is a plain number, as `%` does."""
+    return bool(unit) and not read_unit(unit).text
 
 
 def _turns(unit: str) -> str:
