@@ -269,6 +269,29 @@ def test_what_has_no_unit_may_have_any(old: str, new: str) -> None:
     assert told(BODY.replace(old, new)) == []
 
 
+def test_signals_get_the_units_that_their_equations_give_them() -> None:
+    text = BODY.replace(", unit: m/s}", "}").replace(", unit: m}", "}")
+    units = compile(read_text(text), backend="quick").flat.units
+    forces = dict.fromkeys(("spring", "damper", "friction", "force"), "N")
+    assert units == {"x": "m", "v": "m/s", "a": "m/s^2", **forces}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "blocks: {x: {type: integrator, of: v}, v: {type: gain, of: x, k: -1}}",  # no unit at all
+        # a rate in 1/s may be one in rad/s
+        "parameters: {w: {value: 3, unit: rad/s}}\n"
+        "blocks: {x: {type: integrator, of: v}, v: {type: constant, value: w}}",
+        # units that contradict each other
+        BODY.replace(", unit: m}", "}").replace("unit: m/s}", "unit: kg}"),
+    ],
+)
+def test_no_unit_is_made_up(text: str) -> None:
+    units = compile(read_text(text), backend="quick").flat.units
+    assert units["x"] == ""
+
+
 def test_a_signal_without_a_unit_has_that_of_its_equations() -> None:
     """That of the acceleration follows from its integral, that of the force from its terms."""
     text = BODY.replace("1/m}", "k/m}")

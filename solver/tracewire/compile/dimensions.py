@@ -36,8 +36,32 @@ def unit_problems(flat: Flat) -> list[Problem]:
 
     None where a diagram has no unit at all, as `x' = -x` of a textbook, which is in plain numbers.
     """
+    return _Units(flat).problems() if _has_units(flat) else []
+
+
+def _has_units(flat: Flat) -> bool:
     own = (parameter.unit for name, parameter in flat.parameters.items() if "." not in name)
-    return _Units(flat).problems() if any((*own, *flat.units.values())) else []
+    return any((*own, *flat.units.values()))
+
+
+def complete_units(flat: Flat) -> dict[str, str]:
+    """The units of a model with those that its equations give to signals and states without one.
+
+    None is added where units contradict each other, and none that is a power of s alone: a rate in
+    1/s may be one in rad/s, as rad is a number.
+    """
+    known = dict(flat.units)
+    if not _has_units(flat):
+        return known
+    units = _Units(flat)
+    if units.problems():
+        return known
+    for name in (*flat.signals, *units.states):
+        if not known.get(name):
+            term = units.resolved({OPEN + name: 1.0})
+            if term.keys() - {"s"} and not any(base.startswith(OPEN) for base in term):
+                known[name] = dimension_text(term)
+    return known
 
 
 def unit_of(flat: Flat, formula: Expression) -> tuple[Term | None, list[Problem]]:

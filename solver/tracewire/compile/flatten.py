@@ -14,6 +14,7 @@ from tracewire.compile.declared_events import (
     memory_name,
     near_ticks,
 )
+from tracewire.compile.dimensions import complete_units
 from tracewire.compile.expand import expand_vectors
 from tracewire.compile.flat import (
     Flat,
@@ -62,7 +63,8 @@ def flatten(diagram: Diagram) -> Flat:
     measured = {name: None for series in diagram.measured.values() for name in series.channels}
     if problems := find_name_clashes(flat, measured):
         raise DiagramError(problems)
-    return replace(flat, signals=signals, loops=loops)
+    flat = replace(flat, signals=signals, loops=loops)
+    return replace(flat, units=complete_units(flat))
 
 
 def _bounds(parameter: Parameter, value: Expression) -> list[Expression]:
