@@ -146,6 +146,39 @@ def test_an_input_that_goes_through_a_frame_stays_inside_of_it() -> None:
     assert faults(drawing) == []
 
 
+IN_FORMULAS = """\
+subsystems:
+  pair:
+    inputs: [q]
+    outputs: {p: deep.p, r: outflow}
+    subsystems:
+      tank:
+        inputs: [q]
+        outputs: {p: p}
+        blocks: {p: {type: integrator, of: q}}
+    blocks:
+      deep: {type: tank, q: q}
+      outflow: {type: expression, formula: 2*deep.p}
+parameters: {ps: 3}
+blocks:
+  T: {type: pair, q: dp}
+  dp: {type: expression, formula: "(ps - T.p if T.r > 0 else 0) - body.v - low.y + T.r"}
+  low: {type: gain, of: dp, k: 2}
+  body: {type: hard_stop, force: dp, high: 1, mass: 1}
+  row: {type: expression, formula: [T.p, 2*T.r]}
+"""
+
+
+def test_outputs_of_subsystems_in_a_formula_have_wires() -> None:
+    drawing = draw(read_text(IN_FORMULAS), 1)
+    wires = {(wire.source, wire.target.partition("<")[0]) for wire in all_wires(drawing.graph)}
+    assert {pair for pair in wires if pair[1] == "dp"} == {
+        ("T>p", "dp"), ("T>r", "dp"), ("body>v", "dp"), ("low>", "dp"),
+    }  # fmt: skip
+    assert ("T.deep>p", "T.outflow") in wires
+    assert {("T>p", "row"), ("T>r", "row")} <= wires
+
+
 def test_an_output_that_turns_a_sign_shows_that_where_it_is_open() -> None:
     closed, opened = (texts(groups(draw(read_text(THROUGH), depth))["part"]) for depth in (0, 1))
     assert "turned" in closed and "−turned" not in closed

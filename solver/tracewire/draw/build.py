@@ -14,7 +14,6 @@ from tracewire.diagram import (
     Wire,
     find_signal,
     find_state,
-    signals,
     split_index,
 )
 from tracewire.draw.details import details_of, event_text, input_details, settings_text
@@ -359,13 +358,13 @@ def _signals_in_formulas(diagram: Diagram, use: BlockUse) -> list[str]:
     message about it is enough.
     """
     found: dict[str, None] = {}
-    known = set(signals(diagram)) | set(diagram.blocks)
     for value in use.settings.values():
         if isinstance(value, Number | Name | Call):
             for name in names_of(value):
                 vector, _ = split_index(name)
-                if vector in known and name not in diagram.parameters:
-                    found.setdefault(vector)
+                signal = find_signal(diagram, vector)
+                if name not in diagram.parameters and (signal or vector in diagram.blocks):
+                    found.setdefault(signal or vector)
     return list(found)
 
 
