@@ -283,6 +283,43 @@ def test_several_presets_and_starts_are_in_one_table(call: Any, pendulum: Path) 
     assert next(iter(told)) == "free, start.phi = 0.174533 rad"
 
 
+ROOT = """\
+span: [0, 1]
+record: [x]
+parameters: {p: 1}
+require: [p > 0]
+blocks:
+  x: {type: integrator, of: r, start: 1}
+  r: {type: expression, formula: -p*sqrt(x)}
+"""
+
+
+def test_of_several_runs_those_that_fail_are_named(call: Any, tmp_path: Path) -> None:
+    file, figure = tmp_path / "root.yaml", tmp_path / "a.svg"
+    file.write_text(ROOT, encoding="utf-8")
+    told = call("run", file, "--over", "p=-1,1,9", "--figure", figure)
+    assert told.code == 0
+    rows = [line.split()[:4] for line in told.out.splitlines() if line.startswith(" x ")]
+    assert rows == [["x", "p", "=", "1"]]
+    assert "the run with p = -1 failed: " in told.out
+    assert "the run with p = 9 failed: " in told.out and "'x' is not finite" in told.out
+    drawn = figure.read_text(encoding="utf-8")
+    assert "<!-- p = 1 -->" in drawn and "<!-- p = 9 -->" not in drawn
+    data = call("run", file, "--over", "p=1,9", "--json").data
+    assert list(data["runs"]) == ["p = 1"] and list(data["failed"]) == ["p = 9"]
+
+
+def test_where_all_runs_fail_the_first_one_is_named(call: Any, tmp_path: Path) -> None:
+    file = tmp_path / "root.yaml"
+    file.write_text(ROOT, encoding="utf-8")
+    told = call("run", file, "--over", "p=8,9")
+    assert told.code == 1
+    assert "all 2 runs failed, the first one with p = 8: the run stopped at t = " in told.err
+    told = call("run", file, "--over", "p=8,9", "--span", "5", "1")
+    assert told.code == 2
+    assert told.err == "the span from 5 to 1 s is empty. Give a begin before the end.\n"
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tracewire.cli.limits import LIMITS
 from tracewire.cli.values import values_of
-from tracewire.errors import OptionError, Problem
+from tracewire.errors import OptionError, Problem, TracewireError
 
 if TYPE_CHECKING:
     from tracewire.compile import Model
@@ -51,6 +51,15 @@ def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[
         hint += "`tracewire sweep` keeps a few numbers of many runs."
         raise OptionError([Problem(what, hint=hint)])
     return found
+
+
+def failure_of(failed: Mapping[str, TracewireError]) -> TracewireError:
+    """The error of the first case where all fail; where they differ it names that case."""
+    name, first = next(iter(failed.items()))
+    if len({str(error) for error in failed.values()}) > 1:
+        what = f"all {len(failed)} runs failed, the first one with {name}"
+        first.problems = [replace(p, what=f"{what}: {p.what}") for p in first.problems]
+    return first
 
 
 def _told(model: Model, name: str, value: float) -> str:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracewire.cli.cases import cases_of
+from tracewire.cli.cases import cases_of, failure_of
 from tracewire.cli.limits import LIMITS
 from tracewire.cli.options import DiagramPath, load_model, read_series
 from tracewire.cli.output import note, print_json, print_table, print_text, telling, working
@@ -15,7 +15,7 @@ from tracewire.cli.records import Sampling
 from tracewire.cli.reporting import write_report
 from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
 from tracewire.cli.values import parameter_values_of, start_values_of, units_of
-from tracewire.errors import Problem
+from tracewire.errors import Problem, TracewireError
 from tracewire.files import writing
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def run(
       tracewire run pendulum.yaml --over c=0.1,0.2,0.5 --unit phi=deg --figure damping.png
 
     Ctrl-C keeps the run up to there: in the file of --output, or in DIAGRAM.interrupted.npz in this
-    folder.
+    folder. Of several runs those that fail are named, and the others are shown.
     """
     target.check()
     model = load_model(diagram, given.library, given.record)
@@ -52,7 +52,7 @@ def run(
     cases = cases_of(model, given.over or (), given.preset or ())
     if len(cases) > 1:
         target.check_several()
-    from tracewire.solve import Options, with_options
+    from tracewire.solve import Interrupted, Options, with_options
 
     conditions, measured = read_series(model, given.series)
     own = Options(parameters=parameters, start=starts, span=sampling.span, every=sampling.every)
@@ -61,14 +61,24 @@ def run(
     is_spaced = sampling.every is not None or model.flat.every is not None
     finer = bool(target.figure or target.report) and not is_spaced
     lost = target.output or f"{Path(diagram).stem}.interrupted.npz"
-    runs = {}
+    runs: dict[str, Run] = {}
+    failed: dict[str, TracewireError] = {}
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
-        run_of_case = _simulated(model, with_options(options, case.options), finer, what, lost)
+        try:
+            run_of_case = _simulated(model, with_options(options, case.options), finer, what, lost)
+        except Interrupted:
+            raise
+        except TracewireError as error:
+            failed[case.name] = error
+            continue
         runs[case.name] = run_of_case.in_units(units)
         _tell_warnings(case.name, run_of_case)
-    _write(runs, target, measured, finer)
-    _tell(runs, target, finer)
+    if not runs:
+        raise failure_of(failed)
+    several = len(cases) > 1
+    _write(runs, target, measured, finer, several)
+    _tell(runs, failed, target, finer, several)
     if (target.figure or target.report) and model.diagram.measured and not given.is_own:
         names = ", ".join(model.diagram.measured)
         if not target.as_json:
@@ -101,7 +111,11 @@ def _simulated(model: Model, options: Options, finer: bool, what: str, lost: str
 
 
 def _write(
-    runs: Mapping[str, Run], target: RunTarget, measured: Measured | None, finer: bool
+    runs: Mapping[str, Run],
+    target: RunTarget,
+    measured: Measured | None,
+    finer: bool,
+    several: bool,
 ) -> None:
     """Write the files that are asked for."""
     result = next(iter(runs.values()))
@@ -112,28 +126,37 @@ def _write(
         with working(f"drawing {target.figure}"), writing(target.figure):
             from tracewire.show import plot_run, plot_runs
 
-            if len(runs) > 1:
+            if several:
                 plot_runs(runs, target.figure, measured)
             else:
                 plot_run(result, target.figure, measured)
     write_report(result, target.report, measured=measured)
 
 
-def _tell(runs: Mapping[str, Run], target: RunTarget, finer: bool) -> None:
-    """Print the runs."""
+def _tell(
+    runs: Mapping[str, Run],
+    failed: Mapping[str, TracewireError],
+    target: RunTarget,
+    finer: bool,
+    several: bool,
+) -> None:
+    """Print the runs, and of several those that failed."""
     from tracewire.show import summary
 
     shown = {name: _thinned(one) for name, one in runs.items()} if finer else runs
     result = next(iter(shown.values()))
     if target.as_json:
         told = {name: summary.run_data(one, target.samples) for name, one in shown.items()}
-        data = {"runs": told} if len(told) > 1 else next(iter(told.values()))
+        wrong = {name: str(error) for name, error in failed.items()}
+        data = {"runs": told, "failed": wrong} if several else next(iter(told.values()))
         print_json(data | {"written": target.written})
         return
-    if len(shown) > 1:
+    if several:
         from tracewire.show.several_runs import runs_table
 
         print_table(runs_table(shown))
+        for name, error in failed.items():
+            print_text(f"the run with {name} failed: {error}")
     else:
         print_table(summary.run_table(result))
         if target.events:
