@@ -248,6 +248,15 @@ def test_what_is_swept_cannot_be_set(
     assert "is set to one value, and has values in --over. Leave one of the two out." in told.err
 
 
+@pytest.mark.parametrize("kind", [("chart", "--over", "omega=1:2:2"), ("bifurcation",)])
+def test_an_analysis_goes_over_no_value_that_is_set(
+    call: Any, forced: Path, kind: tuple[str, ...]
+) -> None:
+    told = call("analyse", *kind, "--over", "k=1:2:2", "--period", "1", "--set", "k=1", forced)
+    assert told.code == 2
+    assert "'k' is set to one value, and has values in --over." in told.err
+
+
 def test_values_that_fail_are_counted(call: Any, tmp_path: Path) -> None:
     file = tmp_path / "root.yaml"
     file.write_text(

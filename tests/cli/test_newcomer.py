@@ -327,6 +327,8 @@ def test_where_all_runs_fail_the_first_one_is_named(call: Any, tmp_path: Path) -
         (["--over", "c=1,2", "--events"], "--events are those of one run, and here are several"),
         (["--over", "c=1,2", "--output", "a.csv"], "--events are those of one run"),
         (["--over", "c=1,2", "--over", "c=3"], "--over gives 'c' twice"),
+        (["--set", "c=3", "--over", "c=1,2"], "'c' is set to one value, and has values in --over."),
+        (["--start", "phi=1", "--over", "start.phi=1,2"], "'start.phi' is set to one value, and"),
         (["--over", "c=1;2"], "--over 'c=1;2' is not a name, '=' and FROM:TO:COUNT or values"),
         (["--over", "d=1,2"], "unknown parameter 'd'"),
         (["--over", "c=1,2 m"], "'m' is another quantity than 1/s"),

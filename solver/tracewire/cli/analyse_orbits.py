@@ -11,7 +11,6 @@ from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, PeriodOptions, Target, Work
 from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell
-from tracewire.cli.values import values_of
 from tracewire.errors import OptionError, Problem
 
 
@@ -118,7 +117,7 @@ def chart(
                 --figure tongues.png --partial tongues.npz
     """
     setting, (period, begin) = read_setting(diagram, given, target), motion.times
-    grid = values_of(setting.model, over)
+    grid = setting.values_of(over)
     if len(grid) != 2:
         what = f"--over names {len(grid)} parameter{'s' * (len(grid) != 1)}, and a chart has two"
         raise OptionError([Problem(what, hint="Give --over a=0:5:101 --over q=0:2:41.")])

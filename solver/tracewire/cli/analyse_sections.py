@@ -11,7 +11,7 @@ from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, PlaneOptions, Work
 from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell
-from tracewire.cli.values import start_values_of, values_of
+from tracewire.cli.values import start_values_of
 from tracewire.errors import OptionError, Problem
 
 Skip = Annotated[int, typer.Option(metavar="N", help="Points that are passed over.")]
@@ -99,7 +99,7 @@ def bifurcation(
     """
     setting = read_setting(diagram, given, target)
     turns = start_values_of(setting.model, modulo or (), "--modulo")
-    ((name, grid),) = values_of(setting.model, [over]).items()
+    ((name, grid),) = setting.values_of([over]).items()
     if name not in setting.model.flat.parameters:
         what = "a bifurcation diagram goes over a parameter, and a start value is carried along"
         raise OptionError([Problem(what, hint="Name a parameter.")])

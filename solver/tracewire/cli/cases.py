@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -33,9 +33,18 @@ class Case:
         return Options(parameters=self.parameters, start=self.start, preset=self.preset)
 
 
-def cases_of(model: Model, over: Sequence[str], presets: Sequence[str]) -> list[Case]:
-    """Each preset with each value of each parameter. Raises OptionError."""
-    grid = values_of(model, over)
+def cases_of(
+    model: Model,
+    over: Sequence[str],
+    presets: Sequence[str],
+    parameters: Collection[str],
+    start: Collection[str],
+) -> list[Case]:
+    """Each preset with each value of each parameter. Raises OptionError.
+
+    parameters, start: what all cases set to one value.
+    """
+    grid = values_of(model, over, parameters=parameters, start=start)
     presets = list(dict.fromkeys(presets)) or [""]
     found = []
     for preset, *values in itertools.product(presets, *grid.values()):

@@ -49,7 +49,7 @@ def run(
     parameters = parameter_values_of(model, given.values or ())
     starts = start_values_of(model, given.start or ())
     units = units_of(model, target.unit or ())
-    cases = cases_of(model, given.over or (), given.preset or ())
+    cases = cases_of(model, given.over or (), given.preset or (), parameters, starts)
     if len(cases) > 1:
         target.check_several()
     from tracewire.solve import Interrupted, Options, with_options

@@ -19,7 +19,7 @@ from tracewire.cli.output import (
     working,
 )
 from tracewire.cli.records import Given, Sampling, Target
-from tracewire.cli.values import parameter_values_of, start_values_of
+from tracewire.cli.values import parameter_values_of, start_values_of, values_of
 from tracewire.files import replacing, write_rows, writing
 
 if TYPE_CHECKING:
@@ -59,6 +59,10 @@ class Setting:
     def options(self) -> dict[str, Any]:
         """The values as functions take them."""
         return {"parameters": self.parameters, "preset": self.preset}
+
+    def values_of(self, over: Sequence[str]) -> dict[str, Any]:
+        """The values that --over gives, by name. Raises OptionError: a name that is set, too."""
+        return values_of(self.model, over, parameters=self.parameters, start=self.start)
 
     def run_options(self, span: tuple[float, float] | None, rtol: float) -> Options:
         """The values as `simulate` takes them, with a span and a tolerance."""

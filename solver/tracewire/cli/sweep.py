@@ -11,8 +11,6 @@ from tracewire.cli.options import DiagramPath, SeriesName, read_series
 from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureTarget, Given, Since, Span, Work
 from tracewire.cli.setting import Rtol, read_setting, tell
-from tracewire.cli.values import values_of
-from tracewire.errors import OptionError, Problem
 
 
 def sweep(
@@ -54,11 +52,7 @@ def sweep(
                 --partial sweep.npz --output sweep.csv
     """
     setting = read_setting(diagram, given, target)
-    grid = values_of(setting.model, over)
-    starts = (f"start.{name}" for name in setting.start)
-    if twice := [name for name in (*setting.parameters, *starts) if name in grid]:
-        what = f"'{twice[0]}' is set to one value, and has values in --over"
-        raise OptionError([Problem(what, hint="Leave one of the two out.")])
+    grid = setting.values_of(over)
     conditions, _ = read_series(setting.model, series)
     with executor_at(work.executor) as pool, working("sweeping") as show:
         from tracewire.analyse import sweep as sweep_of

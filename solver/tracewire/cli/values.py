@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from tracewire.errors import FormulaError, OptionError, Problem, unknown
@@ -64,10 +64,17 @@ def start_values_of(
     return _assigned(texts, option, declared)
 
 
-def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dict[str, Any]:
+def values_of(
+    model: Model,
+    texts: Sequence[str],
+    option: str = "--over",
+    *,
+    parameters: Collection[str] = (),
+    start: Collection[str] = (),
+) -> dict[str, Any]:
     """NAME=FROM:TO:COUNT as evenly spaced values, NAME=VALUE,VALUE,... as these, in SI by name.
 
-    Raises OptionError.
+    parameters, start: what other options set to one value, by full names. Raises OptionError.
     """
     import numpy as np
 
@@ -93,13 +100,14 @@ def values_of(model: Model, texts: Sequence[str], option: str = "--over") -> dic
             hint = f"Write it like {option} f=0.3:0.9:800 or {option} f=0.3,0.5,1."
             problems.append(Problem(what, hint=hint))
             continue
-        read, known = parameter_values_of, name
+        read, known, fixed = parameter_values_of, name, parameters
         if name.startswith("start.") and name not in model.flat.parameters:
-            read, known = start_values_of, name.removeprefix("start.")
-        values = [
-            next(iter(read(model, [f"{known}={number.strip()} {unit}"], option).values()))
-            for number in given
-        ]
+            read, known, fixed = start_values_of, name.removeprefix("start."), start
+        told = [read(model, [f"{known}={number.strip()} {unit}"], option) for number in given]
+        values = [value for one in told for value in one.values()]
+        if any(full in fixed for full in told[0]):
+            what = f"'{name}' is set to one value, and has values in {option}"
+            problems.append(Problem(what, hint="Leave one of the two out."))
         if int(count) < 1:
             problems.append(Problem(f"{option} '{text}' has no values", hint="Give a COUNT."))
             continue
