@@ -178,6 +178,11 @@ def test_a_sweep_has_the_unit_of_its_axis_and_counts_are_whole(tmp_path: Path) -
     assert dict(found.units) == {"k": "N/m", "start.x": "m"}
     said = texts(show.plot_sweep(found, tmp_path / "a.svg"))
     assert "k [N/m]" in said and "start.x [m]" in said
+    in_mm = made(OSCILLATOR.replace("unit: m}", "unit: mm}"))
+    shown = sweep(in_mm, {"k": [1.0, 2.0]}, ["max(abs(x))", "count()"])
+    assert shown.table().rows[0][:2] == ("max(abs(x))", "mm")
+    assert float(shown.table().rows[0][2]) == pytest.approx(1e3 * shown["max(abs(x))"].min())
+    assert "max(abs(x)) [mm]" in texts(show.plot_sweep(shown, tmp_path / "a.svg"))
     counted = Sweep("", {"k": np.arange(3.0)}, {"count()": np.array([1.0, 2.0, 4.0])})
     ticks = texts(show.plot_sweep(counted, tmp_path / "a.svg")).split()
     assert "4" in ticks and "1.5" not in ticks

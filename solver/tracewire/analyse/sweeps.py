@@ -25,7 +25,7 @@ from tracewire.analyse.quantities import (
     measure,
 )
 from tracewire.analyse.work import IncompleteRow, work_through
-from tracewire.compile import Model
+from tracewire.compile import Model, unit_of_quantity
 from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.formula import Expression, parse_quantity
@@ -49,7 +49,7 @@ class Sweep(Result):
 
     `grid` holds the values of each axis in SI, `values` the outputs by name, NaN where a run failed
     or has no such number; `errors` says why, by the indices of the point. `units` are the SI units
-    of the axes.
+    of the axes, `users_units` those in which the user has the outputs, with their factors to SI.
     """
 
     title: str
@@ -57,6 +57,15 @@ class Sweep(Result):
     values: Mapping[str, NDArray[np.float64]]
     errors: Mapping[tuple[int, ...], str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    users_units: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+
+    def as_shown(self, name: str) -> NDArray[np.float64]:
+        """An output in the unit in which tables and figures show it."""
+        return self[name] / self.users_units.get(name, ("", 1.0))[1]
+
+    def unit(self, name: str) -> str:
+        """That unit; '' where it is not known."""
+        return self.users_units.get(name, ("", 1.0))[0]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
         if name not in self.values:
@@ -111,7 +120,8 @@ def sweep(
         for number, text in sorted(store.errors.items())
     }
     units = {name: _unit(model, name) for name in axes}
-    return Sweep(model.flat.title, axes, values, errors, units)
+    users = {name: unit_of_quantity(model, quantity) for name, quantity in measures.items()}
+    return Sweep(model.flat.title, axes, values, errors, units, users)
 
 
 def _unit(model: Model, axis: str) -> str:

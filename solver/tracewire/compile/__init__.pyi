@@ -4,6 +4,7 @@ from .flat import Flat, FlatBlock, FlatEvent, FlatMemory, FlatParameter, FlatSta
 from .lowered import Mode, Reset, Transition
 from .model import Model, compile
 from .name_clashes import find_name_clashes
+from .quantity_units import unit_of_quantity
 from .remarks import remarks_of
 from .rest import AtRest, at_rest
 from .statements import statement_problems
@@ -27,5 +28,6 @@ __all__ = [
     "find_name_clashes",
     "remarks_of",
     "statement_problems",
+    "unit_of_quantity",
     "unit_problems",
 ]

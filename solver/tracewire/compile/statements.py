@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from tracewire.compile.dimensions import unit_of
 from tracewire.compile.model import Model
-from tracewire.diagram import Statement, find_recorded
+from tracewire.compile.quantity_units import in_full
+from tracewire.diagram import Statement
 from tracewire.errors import Problem
-from tracewire.formula import Name, dimension_of, dimension_text, read_unit, rename
+from tracewire.formula import dimension_of, dimension_text, read_unit
 
 
 def statement_problems(model: Model, statements: Iterable[Statement]) -> list[Problem]:
@@ -17,8 +18,7 @@ def statement_problems(model: Model, statements: Iterable[Statement]) -> list[Pr
     does not have may be of any unit."""
     found: list[Problem] = []
     for statement in statements:
-        formula = rename(statement.that, lambda name: Name(_full(model, name)))
-        term, inside = unit_of(model.flat, formula)
+        term, inside = unit_of(model.flat, in_full(model, statement.that))
         found += [replace(problem, place=statement.place) for problem in inside]
         given = dimension_of(read_unit(statement.unit).text) if statement.unit else None
         if term is not None and given is not None and term != given:
@@ -29,10 +29,3 @@ def statement_problems(model: Model, statements: Iterable[Statement]) -> list[Pr
             hint = "Give the unit in which 'is' and the bounds are written."
             found.append(Problem(what, statement.place, hint=hint))
     return found
-
-
-def _full(model: Model, name: str) -> str:
-    flat = model.flat
-    if name in flat.parameters or name in flat.signals or name in model.states:
-        return name
-    return find_recorded(model.diagram, name) or name

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Argument = Literal["signal", "number", "condition", "event", "happening", "parameter", "word"]
-QuantityUnit = Literal["kept", "number", "s", "1/s", "kept s", "parameter", "inside", "any"]
+QuantityUnit = Literal["kept", "number", "s", "1/s", "Hz", "kept s", "parameter", "inside", "any"]
 BRANCHES = ("up", "down")
 
 
@@ -24,7 +24,7 @@ class Quantity:
     events has it; a `happening`: one of these two; the name of a `parameter`; or a `word`. The last
     `optional` of them may be left out; `more`: the last one may be repeated.
 
-    unit: that of the first signal is `kept`, or times s; a `number`; s; 1/s; that of the
+    unit: that of the first signal is `kept`, or times s; a `number`; s; 1/s; Hz; that of the
     `parameter`; that of what is `inside`, or `any`. text: it is a word, such as "stable".
     study: it is no number of a run, and needs more of its setting than a run does. made_by: the
     analysis that makes it, where a key of the setting is for that one only. words: what its first
@@ -69,12 +69,12 @@ QUANTITIES = {
         "drift(x, scale): the largest |x - x(0)|, in parts of |x(0)| unless a scale is given",
         optional=1),
     "period": Quantity(("signal",), "the mean time between rises through the mean", "s"),
-    "frequency": Quantity(("signal",), "1/period, in Hz", "1/s"),
+    "frequency": Quantity(("signal",), "1/period, in Hz", "Hz"),
     "growth_rate": Quantity(("signal",), "r of an envelope exp(r t) through the peaks; below zero "
         "it decays", "1/s"),
     "line": Quantity(("signal", "number", "number"),
         "line(x, n, m): the frequency in Hz of line n, from below, of the m largest of a spectrum",
-        "1/s"),
+        "Hz"),
     "cosine": Quantity(("signal", "number"),
         "cosine(x, w, ...): the part of cos(w t), least squares of waves of all w in rad/s", "kept",
         more=True),

@@ -98,7 +98,7 @@ def _of_quantity(
             return next((t for n, t in terms.items() if quantity.kind(n) == "parameter"), None)
         case "s":
             return {"s": 1.0}
-        case "1/s":
+        case "1/s" | "Hz":
             return {"s": -1.0}
         case "number":
             return {}

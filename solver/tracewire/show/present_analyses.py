@@ -359,12 +359,15 @@ def _sweep_line(found: Sweep) -> str:
 
 def _sweep_parts(found: Sweep) -> list[Part]:
     rows = tuple(
-        (name, precise(float(np.nanmin(v))), precise(float(np.nanmax(v))))
-        for name, v in found.values.items()
+        (name, found.unit(name), precise(float(np.nanmin(v))), precise(float(np.nanmax(v))))
+        for name, v in ((name, found.as_shown(name)) for name in found.values)
     )
-    table = Table("over the grid", ("number", "min", "max"), rows, frozenset({1, 2}))
+    table = Table("over the grid", ("number", "unit", "min", "max"), rows, frozenset({2, 3}))
     first = zip(found.grid.items(), next(iter(found.errors), ()), strict=False)
-    at = " and ".join(f"{name} = {values[i]:.6g}" for (name, values), i in first)
+    at = " and ".join(
+        f"{name} = {values[i]:.6g} {found.units.get(name, '')}".rstrip()
+        for (name, values), i in first
+    )
     return [table, _sweep_line(found), *failed_lines(found.errors, at)]
 
 

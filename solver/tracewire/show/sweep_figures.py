@@ -69,9 +69,10 @@ def plot_sweep(sweep: Sweep, path: str | Path) -> Path:
             figure, below = panels([2.4] * len(names), sweep.title)
             for panel, name in zip(below, names, strict=True):
                 values = sweep.grid[axes[0]]
-                panel.plot(values, sweep[name].ravel(), ".-", color=LINES[0], markersize=4)
-                panel.set_ylabel(cut(name))
-                if not np.any(np.mod(sweep[name][np.isfinite(sweep[name])], 1)):  # such as counts
+                shown = sweep.as_shown(name)
+                panel.plot(values, shown.ravel(), ".-", color=LINES[0], markersize=4)
+                panel.set_ylabel(with_unit(cut(name), sweep.unit(name)))
+                if not np.any(np.mod(shown[np.isfinite(shown)], 1)):  # such as counts
                     panel.locator_params(axis="y", integer=True)
             below[-1].set_xlabel(_axis(sweep, axes[0]))
             return save(figure, path)
@@ -79,11 +80,12 @@ def plot_sweep(sweep: Sweep, path: str | Path) -> Path:
         for panel, name in zip(below, names, strict=True):
             shape = [len(sweep.grid[axis]) for axis in axes]
             mesh = panel.pcolormesh(
-                sweep.grid[axes[0]], sweep.grid[axes[1]], sweep[name].reshape(shape).T,
+                sweep.grid[axes[0]], sweep.grid[axes[1]], sweep.as_shown(name).reshape(shape).T,
                 rasterized=True,
             )  # fmt: skip
             panel.grid(False)
-            figure.colorbar(mesh, ax=panel, pad=0.01).set_label(cut(name))
+            told = with_unit(cut(name), sweep.unit(name))
+            figure.colorbar(mesh, ax=panel, pad=0.01).set_label(told)
             panel.set_ylabel(_axis(sweep, axes[1]))
         below[-1].set_xlabel(_axis(sweep, axes[0]))
         return save(figure, path)

@@ -1,0 +1,80 @@
+"""The unit of a quantity: that of its dimension, or that in which the user has what it is of."""
+
+from __future__ import annotations
+
+from tracewire.compile.dimensions import unit_of
+from tracewire.compile.model import Model
+from tracewire.diagram import element_name, find_recorded
+from tracewire.formula import (
+    OPERATIONS,
+    QUANTITIES,
+    Call,
+    Expression,
+    Name,
+    Number,
+    dimension_text,
+    rename,
+    to_text,
+)
+
+
+def in_full(model: Model, formula: Expression) -> Expression:
+    """The formula with the full names of a model; one that the model does not have stays."""
+    return rename(formula, lambda name: Name(_full(model, name)))
+
+
+def unit_of_quantity(model: Model, quantity: Expression) -> tuple[str, float]:
+    """The unit in which a user has a quantity, and its factor to SI; '' where it is not known.
+
+    It is that of the signals if these have one and the quantity keeps it, as `rms(x - y)` does.
+    """
+    formula = in_full(model, quantity)
+    known_as = QUANTITIES.get(formula.function) if isinstance(formula, Call) else None
+    if known_as is not None and known_as.unit == "Hz":
+        return "Hz", 1.0
+    known = {*model.flat.signals, *model.flat.inputs, *model.states}
+    signals = [name for name in _kept(formula) or () if name in known]
+    of_users = {_users_unit(model, name) for name in signals}
+    of_si = {(model.flat.units.get(name, ""), 1.0) for name in signals}
+    for units in (of_users, of_si):
+        if len(units) == 1 and (unit := next(iter(units)))[0]:
+            return unit
+    term, _ = unit_of(model.flat, formula)
+    return (dimension_text(term) if term else ""), 1.0
+
+
+def _users_unit(model: Model, name: str) -> tuple[str, float]:
+    unit, factor = model.diagram.users_unit(name, "")
+    if unit or name not in model.flat.shown or not model.flat.shown[name].unit:
+        return unit or model.flat.units.get(name, ""), factor
+    return model.flat.shown[name].unit, model.flat.shown[name].factor
+
+
+def _kept(node: Expression) -> list[str] | None:
+    """The names whose unit a formula keeps; None where it makes another one."""
+    if isinstance(node, Name):
+        return [node.name]
+    if isinstance(node, Number):
+        return []
+    if node.function == "[]":
+        vector, *indices = node.arguments
+        index = [int(number.value) for number in indices if isinstance(number, Number)]
+        return [element_name(to_text(vector), index)]
+    operation, quantity = OPERATIONS.get(node.function), QUANTITIES.get(node.function)
+    if operation is not None and operation.unit in ("kept", "same"):
+        parts = [_kept(argument) for argument in node.arguments]
+    elif operation is None and quantity is not None and quantity.unit in ("kept", "inside"):
+        first = [quantity.kind(n) for n in range(len(node.arguments))].index("signal")
+        parts = [_kept(node.arguments[first])]
+    else:
+        return None
+    if any(part is None for part in parts):
+        return None
+    return [name for part in parts for name in part or ()]
+
+
+def _full(model: Model, name: str) -> str:
+    flat = model.flat
+    if name in flat.parameters or name in flat.signals or name in model.states:
+        return name
+    return find_recorded(model.diagram, name) or name
