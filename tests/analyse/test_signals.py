@@ -108,9 +108,29 @@ def test_two_lines_are_told_apart() -> None:
     first, second = spectrum(run_of(x=x), "x", lines=2).lines
     assert (first.frequency, second.frequency) == pytest.approx((1.0, 1.2), abs=5e-3)
     assert (first.amplitude, second.amplitude) == pytest.approx((1.0, 0.25), rel=0.05)
-    assert spectrum(run_of(x=x), "x").resolution == pytest.approx(0.1, rel=1e-3)
+    assert spectrum(run_of(x=x), "x").resolution == pytest.approx(0.05, rel=1e-3)
     assert spectrum(run_of(x=0 * T), "x").lines == ()
     assert spectrum(run_of(x=x), "x", lines=0).lines == ()
+
+
+@given(
+    st.sampled_from(["hann", "flattop", "blackman", "boxcar"]),
+    st.floats(0.5, 8),
+    st.floats(0, 1),
+    st.floats(0, 6),
+)
+@settings(max_examples=60, deadline=None)
+def test_no_two_lines_are_nearer_than_is_told(
+    window: str, bins: float, offset: float, phase: float
+) -> None:
+    first, second = (30 + offset) / T[-1], (30 + offset + bins) / T[-1]
+    x = np.cos(2 * np.pi * first * T) + np.cos(2 * np.pi * second * T + phase)
+    found = spectrum(run_of(x=x), "x", window=window)
+    apart = np.diff(sorted(line.frequency for line in found.lines))
+    assert np.all(apart >= found.resolution * (1 - 1e-9))
+    if second - first > found.resolution + 1.6 / T[-1]:  # the grid of frequencies on both sides
+        nearest = [min(abs(line.frequency - f) for line in found.lines) for f in (first, second)]
+        assert max(nearest) < 0.5 / T[-1]
 
 
 def test_a_spectrum_refuses_what_does_not_fit() -> None:

@@ -32,9 +32,9 @@ class Line:
 class Spectrum(Result):
     """Amplitudes over frequencies: a*cos(2 pi f t) gives a line of height a at f.
 
-    `frequency` (K,) in Hz, `amplitude` (K,) in `unit`; `resolution` in Hz is the distance of two
-    lines that are told apart; `lines` are the largest peaks, placed between the frequencies by the
-    shape of the window.
+    `frequency` (K,) in Hz, `amplitude` (K,) in `unit`; `resolution` in Hz is half the width of a
+    line: what is nearer to a larger line is a part of it; `lines` are the largest peaks, placed
+    between the frequencies by the shape of the window.
     """
 
     title: str
@@ -73,7 +73,7 @@ def spectrum(
     if count % 2 == 0:
         amplitude[-1] /= 2
     frequency = np.asarray(np.fft.rfftfreq(count, found.step), dtype=float)
-    resolution = 2 * WIDE[window] / (count * found.step)
+    resolution = WIDE[window] / (count * found.step)
     return Spectrum(
         run.title,
         signal,
@@ -86,17 +86,22 @@ def spectrum(
 
 
 def _lines(frequency: Vector, amplitude: Vector, window: str, most: int) -> tuple[Line, ...]:
-    """The largest peaks in the order of their height, above a thousandth of the largest."""
+    """The largest peaks in the order of their height, above a thousandth of the largest.
+
+    A peak that is nearer to a larger one than half the width of a line is a part of that.
+    """
     if not amplitude.max(initial=0.0) > 0:
         return ()
-    apart = max(1, int(np.ceil(WIDE[window])))
-    peaks, _ = find_peaks(amplitude, distance=apart, height=1e-3 * amplitude.max())
-    peaks = peaks[np.argsort(-amplitude[peaks], kind="stable")][:most]
-    found = []
+    peaks, _ = find_peaks(amplitude, height=1e-3 * amplitude.max())
+    peaks = peaks[np.argsort(-amplitude[peaks], kind="stable")]
+    found: dict[float, Line] = {}
     for k in peaks.tolist():
+        if len(found) == most:
+            break
         shift, height = _between(amplitude[k - 1 : k + 2], window)
-        found.append(Line(float((k + shift) * frequency[1]), height))
-    return tuple(found)
+        if all(abs(k + shift - place) >= WIDE[window] for place in found):
+            found[k + shift] = Line(float((k + shift) * frequency[1]), height)
+    return tuple(found.values())
 
 
 def _between(three: Vector, window: str) -> tuple[float, float]:
