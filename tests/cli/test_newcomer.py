@@ -130,6 +130,39 @@ def test_figures_are_drawn_finer_than_files(
     assert len(drawn[-1].t) == 601
 
 
+RUBBING = """\
+span: [0, 6]
+every: 0.5
+blocks:
+  v: {type: integrator, of: net}
+  pull: {type: sin, of: time}
+  time: {type: gain, of: clock, k: 2}
+  clock: {type: time}
+  rub: {type: dry_friction, rate: v, slip: 0.3, stick: 0.5}
+  net: {type: sum, of: [pull, rub]}
+"""
+
+
+def test_a_portrait_of_a_friction_is_its_law(
+    call: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its jumps lie at rest, however far apart the samples are."""
+    drawn = []
+    show = import_module("tracewire.show")
+    monkeypatch.setattr(show, "plot_portrait", lambda run, *_, **__: drawn.append(run), False)
+    file = tmp_path / "rubbing.yaml"
+    file.write_text(RUBBING, encoding="utf-8")
+    told = call("analyse", "portrait", file, "v", "rub", "--figure", tmp_path / "a.svg", "--json")
+    assert told.data["samples"] == 13
+    v, rub = drawn[0]["v"], drawn[0]["rub"]
+    jumps = np.flatnonzero(np.abs(np.diff(rub)) > 0.1)
+    assert len(jumps) > 3
+    assert np.abs(v[jumps]).max() < 1e-9
+    moving = np.abs(v) > 1e-9
+    assert rub[moving] == pytest.approx(-0.3 * np.sign(v[moving]))
+    assert np.abs(rub).max() == pytest.approx(0.5, abs=1e-6)
+
+
 @pytest.mark.parametrize(("sign", "said"), [("-", True), ("", False)])
 def test_a_force_with_the_wrong_sign_is_told(
     call: Any, tmp_path: Path, sign: str, said: bool

@@ -29,6 +29,7 @@ from tracewire.analyse import (
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.errors import OptionError
+from tracewire.show.sticking import held_intervals
 from tracewire.show.style import saved_figures
 from tracewire.solve import simulate
 
@@ -65,6 +66,12 @@ def test_a_portrait_shows_what_sticks(tmp_path: Path) -> None:
     run = simulate(compile(read_text(CART)))
     assert "sticks" in texts(show.plot_portrait(run, "v", "rub", tmp_path / "a.svg"))
     assert "sticks" not in texts(show.plot_portrait(run, "v", "rub", tmp_path / "b.svg", since=2))
+    begin, end = held_intervals(run)["rub"][0]
+    seldom = simulate(compile(read_text(CART)), times=[0.0, (begin + end) / 2, end + 0.1])
+    said = texts(
+        show.plot_portrait(seldom, "v", "rub", tmp_path / "c.svg", since=(begin + end) / 2)
+    )
+    assert "sticks" not in said  # one sample is no line
 
 
 def test_a_polar_orbit_is_seen_from_the_side(tmp_path: Path) -> None:

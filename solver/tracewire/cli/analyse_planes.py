@@ -10,8 +10,9 @@ import typer
 
 from tracewire.cli.limits import LIMITS
 from tracewire.cli.options import DiagramPath
+from tracewire.cli.output import telling, working
 from tracewire.cli.records import FigureFile, FigureTarget, Given, Sampling, Since, Target
-from tracewire.cli.setting import Rtol, Signal, read_setting, run_of, tell_parts
+from tracewire.cli.setting import Rtol, Setting, Signal, read_setting, run_of, tell_parts
 
 if TYPE_CHECKING:
     from tracewire.solve import Run
@@ -54,7 +55,8 @@ def portrait(
     run = run_of(setting, sampling, rtol, steps=LIMITS.curve)
     from tracewire.show import plot_portrait
 
-    _tell_plane(run, names, since, plot_portrait, target)
+    seen = _with_both_sides(run, setting, sampling, rtol)
+    _tell_plane(run, seen, names, since, plot_portrait, target)
 
 
 def polar(
@@ -84,21 +86,39 @@ def polar(
     run = run_of(setting, sampling, rtol, steps=LIMITS.curve)
     from tracewire.show import plot_polar
 
-    _tell_plane(run, names, since, plot_polar, target)
+    _tell_plane(run, run, names, since, plot_polar, target)
+
+
+def _with_both_sides(run: Run, setting: Setting, sampling: Sampling, rtol: float) -> Run:
+    """The same run with samples on both sides of each event: between these a line is a jump."""
+    if not run.events:
+        return run
+    import numpy as np
+
+    from tracewire.solve import simulate
+
+    at = np.array([event.time for event in run.events])
+    times = np.unique(np.concatenate([run.t, at, np.nextafter(at, -np.inf)]))
+    times = times[(times >= run.t[0]) & (times <= run.t[-1])]
+    with working("simulating again for the sides of jumps") as show:
+        options = setting.run_options(sampling.span, rtol)
+        options["times"] = times
+        return simulate(setting.model, **options, progress=telling("simulating again", show))
 
 
 def _tell_plane(
     run: Run,
+    drawn: Run,
     names: tuple[str, str],
     since: float | None,
     plot: Callable[..., object],
     target: Target,
 ) -> None:
-    """Draw and write two signals of a run."""
+    """Write two signals of a run, and draw them as `drawn` has them."""
     first = -float("inf") if since is None else since
 
     def draw(path: str) -> object:
-        return plot(run, *names, path, since=first)
+        return plot(drawn, *names, path, since=first)
 
     chosen = run.t >= first
     columns = {"t": run.t[chosen]} | {name: run[name][chosen] for name in names}

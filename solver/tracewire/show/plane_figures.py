@@ -38,7 +38,7 @@ def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np
         across, up = run.as_shown(x)[chosen], run.as_shown(y)[chosen]
         _draw_path(panel, across, up, many)
         sticks = _sticks(run, x, y)[chosen]
-        if sticks.any():
+        if np.any(sticks[:-1] & sticks[1:]):  # one sample is no line
             panel.plot(
                 np.where(sticks, across, np.nan),
                 np.where(sticks, up, np.nan),
