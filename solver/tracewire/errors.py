@@ -53,15 +53,20 @@ MOST_MEANT = 6  # names that are proposed
 
 
 def unknown(
-    kind: str, name: str, existing: Iterable[str], place: Location = Location(), hint: str = ""
+    kind: str,
+    name: str,
+    existing: Iterable[str],
+    place: Location = Location(),
+    hint: str = "",
+    otherwise: str = "",
 ) -> Problem:
     """The problem "unknown KIND 'NAME'", with what exists, and what of that is spelled alike or has
-    the name as one of its words."""
+    the name as one of its words; `otherwise` where nothing has."""
     names = tuple(sorted(existing))
     near = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     near = near or [known for known in names if name.lower() in known.lower().split("_")]
     shown = " or ".join(f"'{known}'" for known in near[:MOST_MEANT])
-    meant = f"Did you mean {shown}?" if near else ""
+    meant = f"Did you mean {shown}?" if near else otherwise
     nothing = "" if names else f"; there is no {kind} here"
     text = " ".join(part for part in (meant, hint) if part)
     return Problem(f"unknown {kind} '{name}'{nothing}", place, names, text)

@@ -177,6 +177,14 @@ def test_check_names_a_measured_file_that_is_missing(call: Any, swing: Path) -> 
     assert f"!           {swing}:19:3: series 'run_1': unknown file 'run_1.csv'" in told.out
 
 
+def test_show_tells_what_stands_in_the_file_with_its_unit(call: Any, tmp_path: Path) -> None:
+    file = tmp_path / "area.yaml"
+    text = "parameters: {A: {value: 12, unit: cm^2}}\nblocks: {y: {type: constant, value: A}}\n"
+    file.write_text(text, encoding="utf-8")
+    (row,) = (line for line in call("show", file, "--parameters").out.splitlines() if " A " in line)
+    assert row.split() == ["A", "0.0012", "m^2", "12", "cm^2"]
+
+
 def test_show_has_parameters_states_signals_and_places(call: Any, swing: Path) -> None:
     out = call("show", swing).out
     for words in ("0.001 to 0.01", "free", "kg m^2", "recorded signals", "presets: free"):

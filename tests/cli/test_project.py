@@ -75,7 +75,7 @@ def test_a_file_of_another_user_is_not_used(
             "'libraries' must be a list of paths. Write it like libraries = [\"./b",
         ),
         ("libraries = [1]", "'libraries' must be a list of paths."),
-        ("libraries = ['nothing']", "there are no block files here."),
+        ("libraries = ['nothing']", "nothing: this does not exist."),
     ],
 )
 def test_what_is_wrong_in_it_is_told_with_the_file(

@@ -63,6 +63,7 @@ BLOCKS = [
     ("a: {type: [gain]}", "a type must be a text"),
     ("a: {type: gian}", "1:20: block 'a': unknown block type 'gian'; there are: expression, gain"),
     ("a: {type: gian}", "Did you mean 'gain'?"),
+    ("a: {type: xyzzy}", "Blocks of your own come with --library FILE."),
     (
         "a: {type: gain, of: a, kk: 1}",
         "unknown input or parameter of 'gain' 'kk'; there are: k, of",

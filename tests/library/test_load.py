@@ -87,7 +87,7 @@ def test_a_folder_without_block_files_is_refused(tmp_path: Path, there: bool) ->
     with pytest.raises(BlockError) as caught:
         load_library([folder])
     assert str(caught.value) == (
-        f"{folder}: there are no block files here."
+        f"{folder}: {'there are no block files here' if there else 'this does not exist'}."
         " A library is a .py file of block declarations, or a folder of them."
     )
 

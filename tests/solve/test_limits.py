@@ -5,6 +5,8 @@ from typing import Any
 
 import pytest
 from solve.models import BALL, LIMITS, made, one, run
+from tracewire.compile import compile
+from tracewire.diagram import read_text
 from tracewire.errors import OptionError, SimulationError
 from tracewire.solve import Limits, simulate
 
@@ -64,6 +66,21 @@ def test_more_steps_than_a_run_may_take_are_refused_before_the_first(given: Any)
     said = r"1 s in steps of at most 1e-09 s are 1e\+09 steps\. A run takes at most 5e\+07: take"
     with pytest.raises(OptionError, match=said):
         simulate(made(one("cos(t)")), **given)
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("max_step: 1e-9", r"<text>:2:11: 1 s in steps of at most 1e-09 s are 1e\+09 steps"),
+        ("max_step: h", r"<text>:2:11: steps of -1 s at most lead nowhere"),
+        ("every: 1e-9", r"<text>:2:8: an output every 1e-09 s from 0 to 1 s cannot be kept"),
+        ("every: 2", r"<text>:2:8: an output every 2 s has one sample only from 0 to 1 s"),
+    ],
+)
+def test_what_the_diagram_sets_is_refused_with_its_place(key: str, said: str) -> None:
+    text = f"span: [0, 1]\n{key}\nparameters: {{h: 1}}\nblocks: {{x: {{type: integrator, of: y}}, y: {{type: time}}}}"
+    with pytest.raises(OptionError, match=said):
+        simulate(compile(read_text(text)), parameters={"h": -1})
 
 
 def test_the_limit_of_wall_time() -> None:

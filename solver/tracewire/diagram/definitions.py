@@ -235,4 +235,6 @@ class Definitions:
         if hint:
             self.problems.add(f"unknown block type '{clip(type_name)}'", place, (), hint)
         else:
-            self.problems.unknown("block type", type_name, [*visible, *self.library], place)
+            names = [*visible, *self.library]
+            own = "Blocks of your own come with --library FILE."
+            self.problems.unknown("block type", type_name, names, place, otherwise=own)

@@ -37,15 +37,22 @@ class Problems:
         return any(problem.place == place for problem in self.found)
 
     def unknown(
-        self, kind: str, name: str, existing: Iterable[str], place: Location, hint: str = ""
+        self,
+        kind: str,
+        name: str,
+        existing: Iterable[str],
+        place: Location,
+        hint: str = "",
+        otherwise: str = "",
     ) -> None:
-        """Note that there is no such name, and which there are."""
+        """Note that there is no such name, and which there are; `otherwise` is said where none of
+        them is near."""
         if self.skips():
             return
         names = sorted(set(existing))
         self.compared += len(names)
         if self.compared <= LIMITS.most_compared:
-            self._note(unknown(kind, clip(name), names, place, hint))
+            self._note(unknown(kind, clip(name), names, place, hint, otherwise))
         else:  # the search for a near name takes a tenth of a millisecond for each that exists
             self._note(Problem(f"unknown {kind} '{clip(name)}'", place, tuple(names), hint))
 

@@ -59,9 +59,8 @@ def load_library(extra: Iterable[str | Path] = ()) -> Library:
         found = [folder] if folder.is_file() else block_files(folder)
         if not found:
             hint = "A library is a .py file of block declarations, or a folder of them."
-            problems.append(
-                Problem("there are no block files here", Location(str(folder)), (), hint)
-            )
+            what = "there are no block files here" if folder.exists() else "this does not exist"
+            problems.append(Problem(what, Location(str(folder)), (), hint))
         files += found
     return _library(*load_files(files, problems))
 

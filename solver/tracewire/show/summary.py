@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def parameters_table(model: Model) -> Table:
     """Parameters: value and unit in SI, and the bounds of those that a fit may change.
 
-    Where a parameter is written in another unit, its number in the file stands beside it.
+    Where a parameter is written in another unit, what stands in the file is beside it.
     """
     rows = []
     written = any(p.factor != 1.0 for p in model.flat.parameters.values())
@@ -35,7 +35,8 @@ def parameters_table(model: Model) -> Table:
         bounds = "" if parameter.fit is None else _bounds(parameter.fit)
         cells = [name, shown(value), parameter.unit, bounds]
         if written:
-            cells.append("" if parameter.factor == 1.0 else shown(value / parameter.factor))
+            number = f"{shown(value / parameter.factor)} {parameter.written}".rstrip()
+            cells.append("" if parameter.factor == 1.0 else number)
         rows.append(tuple(cells))
     header = ("parameter", "value", "unit", "fit", *(["in the file"] if written else []))
     return Table("parameters", header, tuple(rows), frozenset({1, 4} if written else {1}))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import OF_THE_PAST, Model
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.history import Past, past_of
@@ -21,7 +21,7 @@ from tracewire.solve.parameters import parameter_values
 from tracewire.solve.sampling import check_times, samples_of, span_of, timing_follows
 from tracewire.solve.sensitivities import Moving, check_sensitivities, moving_with
 from tracewire.solve.tables import pack_tables, tables_follow, tables_of
-from tracewire.solve.tolerance import Tolerance, longest_step, tolerance_of
+from tracewire.solve.tolerance import Tolerance, longest_step, place_of_step, tolerance_of
 
 Vector = NDArray[np.float64]
 
@@ -156,7 +156,9 @@ def _problem(
     longest = longest_step(model, values, limits)
     rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
-    _refuse_short_steps(end - begin, min(longest, step or math.inf), limits)
+    shortest = min(longest, step or math.inf)
+    place = place_of_step(model, values, shortest)
+    _refuse_short_steps(end - begin, shortest, limits, place)
     past = past_of(model, given.get("past") or {})
     return InitialValueProblem(
         model=model,
@@ -174,13 +176,13 @@ def _problem(
     )
 
 
-def _refuse_short_steps(length: float, longest: float, limits: Limits) -> None:
+def _refuse_short_steps(length: float, longest: float, limits: Limits, place: Location) -> None:
     """Raises OptionError: a run that would take more steps than it may, however it goes."""
     count = length / longest
     if count > limits.steps:
         what = f"{length:g} s in steps of at most {longest:g} s are {count:.2g} steps"
         hint = f"A run takes at most {limits.steps:.2g}: take longer steps (step, max_step)."
-        raise OptionError.one(what, hint=hint)
+        raise OptionError.one(what, place, hint=hint)
 
 
 def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Problem
+from tracewire.errors import Location, OptionError, Problem
 from tracewire.formula import evaluate, names_of
 from tracewire.solve.limits import MEMORY, SAMPLE
 from tracewire.solve.once_per_model import once_per_model
@@ -75,16 +75,18 @@ def samples_of(
             )
             raise OptionError([Problem(what, hint="Give a longer span, or other times.")])
         return times
+    place = Location()
     if every is None:
         if model.flat.every is None:
             return _default_times(begin, end).copy()
         every = evaluate(model.flat.every, values)
+        place = place if model.diagram.every is None else model.diagram.every.place
     if not every > 0 or (end - begin) / every > SAMPLE.most:
         what = f"an output every {every:g} s from {begin:g} to {end:g} s cannot be kept"
-        raise OptionError([Problem(what, hint="Give a larger `every`.")])
+        raise OptionError([Problem(what, place, hint="Give a larger `every`.")])
     if every > (end - begin) * (1 + 1e-12):  # a run of one sample would say nothing of its end
         what = f"an output every {every:g} s has one sample only from {begin:g} to {end:g} s"
-        raise OptionError([Problem(what, hint="Give a smaller `every`, or a longer span.")])
+        raise OptionError([Problem(what, place, hint="Give a smaller `every`, or a longer span.")])
     count = math.floor((end - begin) / every * (1 + 1e-12))
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Problem, unknown
+from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.formula import evaluate
 from tracewire.solve.core.codes import ABSOLUTE
 from tracewire.solve.core.methods import STEPPED
@@ -83,5 +83,14 @@ def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> f
         longest = min(longest, STEP.known_past * time)
     if not longest > 0:
         what = f"steps of {longest:g} s at most lead nowhere"
-        raise OptionError([Problem(what, hint="Give a max_step above 0.")])
+        place = place_of_step(model, values, longest)
+        raise OptionError([Problem(what, place, hint="Give a max_step above 0.")])
     return longest
+
+
+def place_of_step(model: Model, values: Mapping[str, float], longest: float) -> Location:
+    """Where the diagram sets the longest step to this one in s; nowhere if something else does."""
+    given, written = model.flat.max_step, model.diagram.max_step
+    if given is None or written is None or float(evaluate(given, values)) != longest:
+        return Location()
+    return written.place
