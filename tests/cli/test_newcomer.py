@@ -367,7 +367,7 @@ def test_where_all_runs_fail_the_first_one_is_named(call: Any, tmp_path: Path) -
         (["--over", "c=1,2 m"], "'m' is another quantity than 1/s"),
         (["--set", "c=1", "--set", "c=2"], "Leave one out, or run both: --over c=1,2."),
         (["--unit", "phi"], "--unit 'phi' is not a signal, '=' and a unit"),
-        (["--unit", "phi=m"], "'m' is another quantity than rad"),
+        (["--unit", "phi=m"], "'m' is another quantity than rad. Give it in rad or a unit like"),
         (["--unit", "psi=deg"], "unknown recorded signal 'psi'"),
     ],
 )
@@ -394,6 +394,14 @@ def test_results_are_in_the_unit_that_is_asked_for(
     assert file.read_text(encoding="utf-8").splitlines()[1].startswith("0.0,0.5,")
     data = call("run", pendulum, "--json").data["signals"]["phi"]
     assert (data["unit"], data["start"]) == ("rad", 0.5)
+
+
+def test_a_unit_that_the_equations_contradict_is_refused(call: Any, pendulum: Path) -> None:
+    pendulum.write_text(PENDULUM.replace(", unit: rad/s}", "}"), encoding="utf-8")
+    told = call("run", pendulum, "--unit", "omega=m")
+    assert told.code == 2
+    assert "'m' is another quantity than 1/s. Give it in 1/s or a unit like it." in told.err
+    assert call("run", pendulum, "--unit", "omega=rpm").code == 0
 
 
 def test_a_portrait_has_labels_and_units(call: Any, pendulum: Path, tmp_path: Path) -> None:

@@ -78,7 +78,8 @@ def test_more_steps_than_a_run_may_take_are_refused_before_the_first(given: Any)
     ],
 )
 def test_what_the_diagram_sets_is_refused_with_its_place(key: str, said: str) -> None:
-    text = f"span: [0, 1]\n{key}\nparameters: {{h: 1}}\nblocks: {{x: {{type: integrator, of: y}}, y: {{type: time}}}}"
+    blocks = "blocks: {x: {type: integrator, of: y}, y: {type: time}}"
+    text = f"span: [0, 1]\n{key}\nparameters: {{h: 1}}\n{blocks}\n"
     with pytest.raises(OptionError, match=said):
         simulate(compile(read_text(text)), parameters={"h": -1})
 

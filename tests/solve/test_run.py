@@ -49,6 +49,11 @@ def test_a_run_is_shown_in_other_units_and_stays_in_si() -> None:
         plain.in_units({"y": "mm"})
     with pytest.raises(OptionError, match=r"'x' is in mm?, and 'kg' is another quantity"):
         replace(plain, units={"x": "m"}).in_units({"x": "kg"})
+    derived = run("parameters: {v: {value: 1, unit: m/s}}\nblocks: {x: {type: integrator, of: y}, "
+                  "y: {type: constant, value: v}}", times=[0.0, 1.0], record=("x",))  # fmt: skip
+    assert derived.in_units({"x": "mm"}).as_shown("x")[1] == pytest.approx(1e3)
+    with pytest.raises(OptionError, match="'x' is in m, and 'bar' is another quantity"):
+        derived.in_units({"x": "bar"})
 
 
 def test_a_run_knows_what_it_cost_and_how_it_ended() -> None:

@@ -124,6 +124,8 @@ def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict
 
     Raises OptionError: a text that cannot be read, an unknown signal, a unit of another quantity.
     """
+    from tracewire.compile import unit_of_signal
+
     found: dict[str, str] = {}
     problems: list[Problem] = []
     for text in texts:
@@ -135,7 +137,7 @@ def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict
             problems.append(unknown("recorded signal", name, model.recorded))
         else:
             try:
-                _factor(text, unit, model.flat.units.get(name, ""), option)
+                _factor(text, unit, unit_of_signal(model, name), option, needed=True)
             except (FormulaError, OptionError) as error:
                 problems += error.problems
         found[name] = unit
@@ -178,13 +180,14 @@ def _assigned(
     return values
 
 
-def _factor(text: str, given: str, declared: str, option: str) -> float:
+def _factor(text: str, given: str, declared: str, option: str, needed: bool = False) -> float:
     """The factor from the given unit to SI; a name that declares no unit takes any."""
     from tracewire.formula import quantity_hint, read_unit, same_quantity
 
     unit = read_unit(given)
     if declared not in ("", "1", given, unit.text) and not same_quantity(given, declared):
         what = f"{option} '{text}': '{given}' is another quantity than {declared}"
-        hint = quantity_hint(given, declared, f"Give it in {declared}, or without a unit.")
+        other = " or a unit like it" if needed else ", or without a unit"
+        hint = quantity_hint(given, declared, f"Give it in {declared}{other}.")
         raise OptionError([Problem(what, hint=hint)])
     return unit.factor

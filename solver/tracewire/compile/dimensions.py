@@ -36,10 +36,11 @@ def unit_problems(flat: Flat) -> list[Problem]:
 
     None where a diagram has no unit at all, as `x' = -x` of a textbook, which is in plain numbers.
     """
-    return _Units(flat).problems() if _has_units(flat) else []
+    return _Units(flat).problems() if has_units(flat) else []
 
 
-def _has_units(flat: Flat) -> bool:
+def has_units(flat: Flat) -> bool:
+    """Whether a parameter of the diagram, or a signal, has a unit."""
     own = (parameter.unit for name, parameter in flat.parameters.items() if "." not in name)
     return any((*own, *flat.units.values()))
 
@@ -51,7 +52,7 @@ def complete_units(flat: Flat) -> dict[str, str]:
     1/s may be one in rad/s, as rad is a number.
     """
     known = dict(flat.units)
-    if not _has_units(flat):
+    if not has_units(flat):
         return known
     units = _Units(flat)
     if units.problems():

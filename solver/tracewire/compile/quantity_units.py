@@ -1,8 +1,8 @@
-"""The unit of a quantity: that of its dimension, or that in which the user has what it is of."""
+"""The unit of a signal, and that of a quantity, which may be the one in which a user has it."""
 
 from __future__ import annotations
 
-from tracewire.compile.dimensions import unit_of
+from tracewire.compile.dimensions import has_units, unit_of, unit_problems
 from tracewire.compile.model import Model
 from tracewire.diagram import element_name, find_recorded
 from tracewire.formula import (
@@ -39,8 +39,26 @@ def unit_of_quantity(model: Model, quantity: Expression) -> tuple[str, float]:
     for units in (of_users, of_si):
         if len(units) == 1 and (unit := next(iter(units)))[0]:
             return unit
+    if not has_units(model.flat):  # all is in plain numbers, but for the time
+        own = "" if known_as is None else known_as.unit
+        return (own if own in ("s", "1/s") else ""), 1.0
+    return _derived(model, formula), 1.0
+
+
+def unit_of_signal(model: Model, name: str) -> str:
+    """The SI unit of a signal: its own, or the one that its equations give it; '' if it may have
+    any."""
+    if own := model.flat.units.get(name, ""):
+        return own
+    return _derived(model, Name(name)) if has_units(model.flat) else ""
+
+
+def _derived(model: Model, formula: Expression) -> str:
+    """The unit that the equations give a formula; '' too where units contradict each other."""
+    if unit_problems(model.flat):
+        return ""
     term, _ = unit_of(model.flat, formula)
-    return (dimension_text(term) if term else ""), 1.0
+    return dimension_text(term) if term else ""
 
 
 def _users_unit(model: Model, name: str) -> tuple[str, float]:
