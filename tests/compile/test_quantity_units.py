@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 
 import pytest
-from tracewire.compile import compile, unit_of_quantity, unit_of_signal
+from tracewire.compile import compile, unit_of_quantity
 from tracewire.diagram import read_text
 from tracewire.formula import parse_quantity
 
@@ -58,14 +58,6 @@ def test_a_quantity_has_the_unit_of_what_it_keeps(quantity: str, unit: str, fact
 def test_a_quantity_of_plain_numbers_has_no_unit() -> None:
     blocks = "{x: {type: integrator, of: y}, y: {type: cos, of: z}, z: {type: constant, value: 1}}"
     model = compile(read_text(f"blocks: {blocks}"))
-    assert unit_of_signal(model, "x") == ""
+    assert model.flat.units["x"] == ""
     for quantity, unit in (("max(x)", ""), ("growth_rate(x)", "1/s"), ("period(x)", "s")):
         assert unit_of_quantity(model, parse_quantity(quantity)) == (unit, 1.0)
-
-
-def test_a_signal_has_the_unit_that_its_equations_give_it() -> None:
-    model = compile(read_text(CART))
-    found = {name: unit_of_signal(model, name) for name in ("C.x", "C.v", "spring", "omega")}
-    assert found == {"C.x": "m", "C.v": "m/s", "spring": "N", "omega": "1/s"}
-    wrong = compile(read_text(f"{CART}  bad: {{type: expression, formula: m + k}}\n"))
-    assert (unit_of_signal(wrong, "C.v"), unit_of_signal(wrong, "C.x")) == ("", "m")

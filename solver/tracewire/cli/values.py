@@ -124,8 +124,6 @@ def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict
 
     Raises OptionError: a text that cannot be read, an unknown signal, a unit of another quantity.
     """
-    from tracewire.compile import unit_of_signal
-
     found: dict[str, str] = {}
     problems: list[Problem] = []
     for text in texts:
@@ -137,7 +135,7 @@ def units_of(model: Model, texts: Iterable[str], option: str = "--unit") -> dict
             problems.append(unknown("recorded signal", name, model.recorded))
         else:
             try:
-                _factor(text, unit, unit_of_signal(model, name), option, needed=True)
+                _factor(text, unit, model.flat.units.get(name, ""), option, needed=True)
             except (FormulaError, OptionError) as error:
                 problems += error.problems
         found[name] = unit

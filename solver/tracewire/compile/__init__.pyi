@@ -4,7 +4,7 @@ from .flat import Flat, FlatBlock, FlatEvent, FlatMemory, FlatParameter, FlatSta
 from .lowered import Mode, Reset, Transition
 from .model import Model, compile
 from .name_clashes import find_name_clashes
-from .quantity_units import unit_of_quantity, unit_of_signal
+from .quantity_units import unit_of_quantity
 from .remarks import remarks_of
 from .rest import AtRest, at_rest
 from .statements import statement_problems
@@ -29,6 +29,5 @@ __all__ = [
     "remarks_of",
     "statement_problems",
     "unit_of_quantity",
-    "unit_of_signal",
     "unit_problems",
 ]

@@ -1,4 +1,4 @@
-"""The unit of a signal, and that of a quantity, which may be the one in which a user has it."""
+"""The unit of a quantity, which may be the one in which a user has it."""
 
 from __future__ import annotations
 
@@ -43,14 +43,6 @@ def unit_of_quantity(model: Model, quantity: Expression) -> tuple[str, float]:
         own = "" if known_as is None else known_as.unit
         return (own if own in ("s", "1/s") else ""), 1.0
     return _derived(model, formula), 1.0
-
-
-def unit_of_signal(model: Model, name: str) -> str:
-    """The SI unit of a signal: its own, or the one that its equations give it; '' if it may have
-    any."""
-    if own := model.flat.units.get(name, ""):
-        return own
-    return _derived(model, Name(name)) if has_units(model.flat) else ""
 
 
 def _derived(model: Model, formula: Expression) -> str:

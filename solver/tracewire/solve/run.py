@@ -11,7 +11,7 @@ from typing import Any, Literal, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from tracewire.compile import Model, unit_of_signal
+from tracewire.compile import Model
 from tracewire.diagram import Shown, row_ends
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.extras import import_extra
@@ -158,8 +158,6 @@ class Run(Result):
         for name, text in units.items():
             self[name]  # it must exist
             unit, known = read_unit(text), self.units.get(name, "")
-            if not known and self.model is not None:
-                known = unit_of_signal(self.model, name)
             if known and not same_quantity(text, known):
                 what = f"'{name}' is in {known}, and '{text}' is another quantity"
                 hint = quantity_hint(text, known, f"Give a unit like {known}.")
