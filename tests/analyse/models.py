@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+from tracewire.analyse import Judged, judge
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 
@@ -123,3 +126,16 @@ blocks:
 def made(text: str, record: tuple[str, ...] = ()) -> Model:
     """The model of a diagram text."""
     return compile(read_text(text), record=record)
+
+
+def row_of(diagram: str, that: str, more: str = "", expected: str = "above: -1e9") -> Judged:
+    """One statement about a diagram, measured."""
+    text = f'{diagram}expect:\n  - {{that: "{that}", {expected}{more and f", {more}"}}}\n'
+    (row,) = judge(read_text(text, Path("a.yaml")))
+    return row
+
+
+def value_of(diagram: str, that: str, more: str = "") -> float:
+    row = row_of(diagram, that, more)
+    assert isinstance(row.value, float), row.why
+    return row.value

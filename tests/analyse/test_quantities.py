@@ -6,7 +6,8 @@ import math
 from pathlib import Path
 
 import pytest
-from tracewire.analyse import Judge, Judged, judge
+from analyse.models import row_of, value_of
+from tracewire.analyse import Judge, judge
 from tracewire.compile import compile, statement_problems
 from tracewire.diagram import read_text
 
@@ -69,19 +70,6 @@ blocks:
   dy: {type: expression, formula: x*(28 - z) - y}
   dz: {type: expression, formula: x*y - 8/3*z}
 """
-
-
-def row_of(diagram: str, that: str, more: str = "", expected: str = "above: -1e9") -> Judged:
-    """One statement about a diagram, measured."""
-    text = f'{diagram}expect:\n  - {{that: "{that}", {expected}{more and f", {more}"}}}\n'
-    (row,) = judge(read_text(text, Path("a.yaml")))
-    return row
-
-
-def value_of(diagram: str, that: str, more: str = "") -> float:
-    row = row_of(diagram, that, more)
-    assert isinstance(row.value, float), row.why
-    return row.value
 
 
 T = math.pi

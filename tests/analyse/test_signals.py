@@ -76,6 +76,19 @@ def test_a_growing_mathieu_has_the_rate_of_its_multiplier() -> None:
     assert found.rate == pytest.approx(exponent, rel=1e-3)
 
 
+@pytest.mark.parametrize("atol", [None, 1e-8, {"x": 1e-8, "v": 1e-6}])
+@pytest.mark.parametrize("rtol", [1e-5, 1e-8])
+def test_peaks_of_noise_do_not_count(rtol: float, atol: Any) -> None:
+    """x = exp(-t) cos(w t) falls by exp(-40), below all that a run has of it."""
+    run = simulate(made(OSCILLATOR), parameters={"k": 400.0, "c": 2.0}, span=(0, 40),
+                   times=np.linspace(0, 40, 8001), rtol=rtol, atol=atol)  # fmt: skip
+    found = growth_rate(run, "x")
+    assert found.rate == pytest.approx(-1.0, rel=1e-3)
+    assert not found.bends
+    with pytest.raises(AnalysisError, match=r"below .* the tolerances of the run do not resolve"):
+        growth_rate(run, "x", since=30.0)
+
+
 @pytest.mark.parametrize(
     ("options", "error", "said"),
     [

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import signal_of, vertex
+from tracewire.analyse.signal import floor_of, signal_of, vertex
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -53,9 +53,9 @@ def growth_rate(
 
     `by` "peaks": the largest |values| of each half wave, or with `period` in s of each period (of a
     signal that beats, several times its longest one); "size": |values| themselves, for a norm or an
-    energy, which has no waves. The error is the standard error of the slope, widened where
-    neighbouring residuals go together. Raises OptionError; AnalysisError where there are fewer than
-    four peaks.
+    energy, which has no waves. What the tolerances of the run do not resolve does not count. The
+    error is the standard error of the slope, widened where neighbouring residuals go together.
+    Raises OptionError; AnalysisError where there are fewer than four peaks.
     """
     if by not in ("peaks", "size"):
         raise OptionError([unknown("envelope", by, ("peaks", "size"))])
@@ -64,21 +64,32 @@ def growth_rate(
         raise OptionError([Problem(what, hint="Give a period above 0, in s.")])
     found = signal_of(run, signal, since, until, even=False)
     size = np.abs(found.values)
+    floor = floor_of(run, signal)[np.searchsorted(run.t, found.t)]
     if by == "peaks":
         at = _windows(found.t, size, period) if period else _peaks(size)
     else:
         at = np.flatnonzero(size > 0)
-    at = at[size[at] > 0]
+    noise = int(np.sum(size[at] <= floor[at]))
+    at = at[size[at] > floor[at]]
     if len(at) < SIGNAL.fewest_peaks:
-        what = f"'{signal}' has {len(at)} peaks there, too few for a growth rate"
-        hint = "Take a longer time, or samples that are closer."
-        raise AnalysisError([Problem(what, hint=hint)])
+        raise _too_few(signal, len(at), noise, floor[-1], found.unit)
     t, top = (
         _refined(found.t, size, at) if by == "peaks" and not period else (found.t[at], size[at])
     )
     rate, level, error, _ = _line(t, np.log(top))
     late, bends = _halves(t, np.log(top), rate)
     return GrowthRate(signal, found.unit, rate, error, level, late, bends, t, top)
+
+
+def _too_few(signal: str, count: int, noise: int, floor: float, unit: str) -> AnalysisError:
+    """The error of an envelope with so few points: of how many the run's noise has more."""
+    what = f"'{signal}' has {count} peaks there, too few for a growth rate"
+    hint = "Take a longer time, or samples that are closer."
+    if noise:
+        size = f"{floor:.2g} {unit}".rstrip()
+        what += f"; below {size} the tolerances of the run do not resolve it ({noise} peaks)"
+        hint = "Take closer samples or a smaller rtol; what does not oscillate has no peaks."
+    return AnalysisError([Problem(what, hint=hint)])
 
 
 def _peaks(size: Vector) -> NDArray[np.int64]:

@@ -36,6 +36,17 @@ def vertex(low: Vector, middle: Vector, high: Vector) -> Vector:
     return np.where(bend < 0, 0.5 * (low - high) / np.where(bend < 0, bend, 1.0), 0.0)
 
 
+def floor_of(run: Run, name: str) -> Vector:
+    """The sizes (N,) below which a signal is noise of the run: a part of the largest so far.
+
+    That of a state follows from its tolerances, that of a formula from the coarsest of all states.
+    """
+    part = run.resolved.get(name)
+    if part is None:
+        part = max((p for p in run.resolved.values() if p < 1), default=0.0)
+    return part * np.maximum.accumulate(np.abs(run[name]))
+
+
 def signal_of(
     run: Run, name: str, since: float | None, until: float | None, even: bool = True
 ) -> Signal:

@@ -70,8 +70,8 @@ QUANTITIES = {
         optional=1),
     "period": Quantity(("signal",), "the mean time between rises through the mean", "s"),
     "frequency": Quantity(("signal",), "1/period, in Hz", "Hz"),
-    "growth_rate": Quantity(("signal",), "r of an envelope exp(r t) through the peaks; below zero "
-        "it decays", "1/s"),
+    "growth_rate": Quantity(("signal",), "r of an envelope exp(r t) through the peaks that the "
+        "tolerances resolve; below zero it decays", "1/s"),
     "line": Quantity(("signal", "number", "number"),
         "line(x, n, m): the frequency in Hz of line n, from below, of the m largest of a spectrum",
         "Hz"),

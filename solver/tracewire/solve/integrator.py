@@ -12,6 +12,7 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Progress
 from tracewire.solve.core.codes import (
+    ABSOLUTE,
     BEYOND,
     BUDGET,
     END,
@@ -274,7 +275,18 @@ class Integrator:
             shown=model.flat.shown,
             model=model,
             sensitivities=recorded(model, answers, problem.sensitivities),
+            resolved=dict(zip(names, self._resolved.tolist(), strict=True)),
         )
+
+    @property
+    def _resolved(self) -> Vector:
+        """The part (n,) of the largest value of each state that is as much above its absolute
+        tolerance as the usual one is below the relative tolerance; 1 at most."""
+        progress = self.arrays.progress
+        least = progress.atol / ABSOLUTE
+        part = np.ones(len(least))
+        np.divide(least, progress.largest, out=part, where=progress.largest > least)
+        return part
 
     def give_back(self) -> None:
         """Let the next run of the model have the arrays; this one is over."""

@@ -123,7 +123,8 @@ class Run(Result):
     A sample at the time of an event is the right limit. `parameters` and `start` are the values
     that were used; `final` holds the states at the end. `sensitivities` holds, by parameter or
     `start.state`, by recorded signal, d signal/d that (N,) in SI, at a fixed time. `shown` has the
-    labels and units of tables and figures; `model` is what was simulated.
+    labels and units of tables and figures; `model` is what was simulated. `resolved` holds, by
+    state, the part of its largest value so far below which the tolerances do not resolve it.
     """
 
     title: str
@@ -139,6 +140,7 @@ class Run(Result):
     sensitivities: Sensitivities = field(default_factory=Sensitivities)
     shown: Mapping[str, Shown] = field(default_factory=dict)
     model: Model | None = field(default=None, repr=False)
+    resolved: Mapping[str, float] = field(default_factory=dict)
 
     def as_shown(self, name: str) -> Vector:
         """A signal (N,) in the unit in which tables and figures show it."""

@@ -37,6 +37,8 @@ Further = Mapping[str, Callable[..., float]]
 NOTHING_FURTHER: Further = MappingProxyType({})
 SMOOTH = frozenset(("+", "-", "*", "/", "**", "neg", "sin", "cos", "tan", "exp", "sqrt"))
 """Functions that have no guard."""
+OF_WAVES = frozenset(("growth_rate",))
+"""Quantities that read what was before the samples that count, to tell a wave from noise."""
 
 
 @dataclass(frozen=True)
@@ -135,6 +137,8 @@ class At:
                 return
             for argument in formulas_in(node):
                 self.along.ask(argument)
+                if node.function in OF_WAVES and len(self.subject.early):
+                    replace(self.along, times=self.subject.early).ask(argument)
         elif isinstance(node, Call):
             for argument in node.arguments:
                 self.ask(argument)

@@ -113,8 +113,21 @@ def _as_run(at: At, node: Expression) -> tuple[Run, str]:
     return replace(at.subject.run, t=t, signals={name: values}), name
 
 
+def _from_begin(at: At, node: Expression) -> tuple[Run, str, float]:
+    """The same from the begin of the run on, as what it resolves follows from all that was before;
+    and since when samples count."""
+    run, name = _as_run(at, node)
+    since, early = float(run.t[0]), at.subject.early
+    if _events_in(node) is None and len(early):
+        before = np.asarray(replace(at, times=early, state=None).value(node), dtype=float)
+        values = np.concatenate([np.broadcast_to(before, early.shape), run[name]])
+        run = replace(run, t=np.concatenate([early, run.t]), signals={name: values})
+    return run, name, since
+
+
 def _growth(at: At, node: Call) -> float:
-    return growth_rate(*_as_run(at, node.arguments[0])).rate
+    run, name, since = _from_begin(at, node.arguments[0])
+    return growth_rate(run, name, since=since).rate
 
 
 def _line(at: At, node: Call) -> float:

@@ -104,6 +104,15 @@ class Subject:
             raise OptionError([Problem(what, hint="Give an earlier `since`, or a longer span.")])
         return found
 
+    @cached_property
+    def early(self) -> Vector:
+        """As many times in s from the begin of the run to the samples that count."""
+        c = self.conditions
+        begin, _ = c.options.get("span") or span_of(self.model, self.parameters)
+        if c.since is None or not begin < self.t[0]:
+            return np.empty(0)
+        return np.linspace(begin, self.t[0], len(self.t) + 1)[:-1]
+
     def ask(self, name: str, times: Vector | None = None) -> None:
         """Tell that a signal will be asked for, at times (M,) in s beside those of its samples."""
         self.recorder.ask(name)
