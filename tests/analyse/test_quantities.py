@@ -403,7 +403,7 @@ LOST = [
     ("motions(1e9, 1, x)", "run: {period: 1}", "there is no number of starts 1e+09"),
     ("section(x, 1)", "", "a section needs 'period'"),
     ("band_low(up, 0.1)", "", "a band needs one parameter in 'over'"),
-    ("period(x)", "run: {until: 1}", "rises through its mean 0 times"),
+    ("period(x)", "run: {until: 1}", "rises through the middle of its wave 0 times"),
     ("growth_rate(x)", "run: {until: 1}", "too few for a growth rate"),
     ("drift(v)", "", "'v' begins at 0: its drift needs a scale"),
     ("at(x, -1)", "", "a quantity reads a signal at -1 s, and the run begins at 0 s"),

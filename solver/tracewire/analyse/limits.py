@@ -165,8 +165,8 @@ class QuantityLimits:
     """From which motions are looked for."""
     largest_start: Final[float] = 1e100
     """In the unit of a state: what is larger is no number to begin with."""
-    fewest_rises: Final[int] = 2
-    """Of a signal that has a frequency."""
+    fewest_waves: Final[int] = 1
+    """From rise to rise, of a signal that has a frequency."""
     most_lines: Final[int] = 1000
     """Of a spectrum that are counted."""
 

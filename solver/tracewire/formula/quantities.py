@@ -68,7 +68,8 @@ QUANTITIES = {
     "drift": Quantity(("signal", "number"),
         "drift(x, scale): the largest |x - x(0)|, in parts of |x(0)| unless a scale is given",
         optional=1),
-    "period": Quantity(("signal",), "the mean time between rises through the mean", "s"),
+    "period": Quantity(("signal",), "the mean time between rises through the middle of a wave, "
+        "which may decay", "s"),
     "frequency": Quantity(("signal",), "1/period, in Hz", "Hz"),
     "growth_rate": Quantity(("signal",), "r of an envelope exp(r t) through the peaks that the "
         "tolerances resolve; below zero it decays", "1/s"),

@@ -37,7 +37,7 @@ Further = Mapping[str, Callable[..., float]]
 NOTHING_FURTHER: Further = MappingProxyType({})
 SMOOTH = frozenset(("+", "-", "*", "/", "**", "neg", "sin", "cos", "tan", "exp", "sqrt"))
 """Functions that have no guard."""
-OF_WAVES = frozenset(("growth_rate",))
+OF_WAVES = frozenset(("period", "frequency", "growth_rate"))
 """Quantities that read what was before the samples that count, to tell a wave from noise."""
 
 

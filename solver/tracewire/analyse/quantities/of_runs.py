@@ -18,7 +18,9 @@ from tracewire.analyse.quantities.evaluate import (
     of_states,
     other_of,
 )
+from tracewire.analyse.signal import floor_of
 from tracewire.analyse.spectra import spectrum
+from tracewire.analyse.waves import rises
 from tracewire.diagram import EVENT_KINDS, is_quantity
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, is_condition, names_of, to_text
@@ -95,15 +97,15 @@ def _drift(at: At, node: Call) -> float:
 
 
 def _period(at: At, node: Call) -> float:
-    t, values = _along(at, node.arguments[0])
-    off = values - values.mean()
-    at_rise = np.flatnonzero((off[:-1] < 0) & (off[1:] >= 0))
-    if len(at_rise) < QUANTITY.fewest_rises:
-        what = f"'{to_text(node.arguments[0])}' rises through its mean {len(at_rise)} times"
+    run, name, since = _from_begin(at, node.arguments[0])
+    counts = run.t >= since
+    found = rises(run.t[counts], run[name][counts], floor_of(run, name)[counts])
+    whole = np.diff(found)
+    whole = whole[np.isfinite(whole)]
+    if len(whole) < QUANTITY.fewest_waves:
+        what = f"'{name}' rises through the middle of its wave {np.isfinite(found).sum()} times"
         raise AnalysisError([Problem(what, hint="A period needs two: take a longer time.")])
-    part = off[at_rise] / (off[at_rise] - off[at_rise + 1])
-    rises = t[at_rise] + part * (t[at_rise + 1] - t[at_rise])
-    return float((rises[-1] - rises[0]) / (len(rises) - 1))
+    return float(whole.mean())
 
 
 def _as_run(at: At, node: Expression) -> tuple[Run, str]:
