@@ -27,7 +27,7 @@ from tracewire.formula import (
     Expression,
     names_of,
 )
-from tracewire.solve import Options
+from tracewire.solve import Interrupted, Options
 
 Verdict = Literal["agrees", "the print is wrong", "does not agree", "could not be measured"]
 VERDICTS: tuple[Verdict, ...] = (
@@ -149,13 +149,31 @@ class Judge:
         other = None if reference is None else self.subject(diagram, reference)
         return self.subject(diagram, statement.run), other
 
+    def _measured(
+        self, diagram: Diagram, statement: Statement, subject: Subject, other: Subject | None
+    ) -> float | str:
+        """The value of a statement. Where a run fails that others need, too, its own decides."""
+        try:
+            return measure(statement.that, subject, other, self.further)
+        except Interrupted:
+            raise
+        except TracewireError:
+            if not (subject.failed or (other is not None and other.failed)):
+                raise
+        alone = Judge(full=self.full, further=self.further, workers=self.workers)
+        alone.libraries, alone.tell = self.libraries, self.tell
+        alone._recorders = {file: found.fresh() for file, found in self._recorders.items()}
+        subjects = alone._subjects_of(diagram, statement)
+        ask([statement.that], *subjects)
+        return measure(statement.that, *subjects, self.further)
+
     def _row(self, diagram: Diagram, statement: Statement) -> Judged:
         began = time.perf_counter()
         bounds: Bounds | None = None
         try:
             subject, other = self._subjects_of(diagram, statement)
             bounds = bounds_of(statement, subject)
-            found = measure(statement.that, subject, other, self.further)
+            found = self._measured(diagram, statement, subject, other)
         except TracewireError as error:
             why = " ".join([*str(error).split(), *statement.note.split()])
             seconds = time.perf_counter() - began

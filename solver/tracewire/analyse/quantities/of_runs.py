@@ -164,17 +164,22 @@ def _becomes_true(at: At, node: Expression) -> Vector:
 def _events(at: At, node: Expression) -> list[Event]:
     """The events of a kind, else of a block, else of a guard."""
     text = to_text(node)
-    since = at.subject.conditions.since
-    there = [e for e in at.subject.run.events if since is None or e.time >= since]
+    there = _all_events(at)
     if text in EVENT_KINDS:
         return [event for event in there if event.kind == text]
     return [e for e in there if e.block == text] or [e for e in there if e.guard == text]
 
 
+def _all_events(at: At) -> list[Event]:
+    """The events from when samples count to the end; a run that is read later goes on."""
+    since, (_, end) = at.subject.conditions.since, at.subject.span
+    first = -np.inf if since is None else since
+    return [event for event in at.subject.run.events if first <= event.time <= end]
+
+
 def _count(at: At, node: Call) -> float:
     if not node.arguments:
-        since = at.subject.conditions.since
-        return float(sum(since is None or e.time >= since for e in at.subject.run.events))
+        return float(len(_all_events(at)))
     (what,) = node.arguments
     return float(len(_becomes_true(at, what) if is_condition(what) else _events(at, what)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
@@ -32,7 +33,11 @@ class Recorder:
     machine code of its own."""
 
     def __init__(self, model: Model) -> None:
-        self._model = model
+        self._model = self._bare = model
+
+    def fresh(self) -> Recorder:
+        """The same before anything was asked for."""
+        return Recorder(self._bare)
 
     @property
     def model(self) -> Model:
@@ -63,6 +68,7 @@ class Subject:
         self.recorder, self.conditions = recorder, conditions
         self.workers, self.tell = workers, tell if tell is not None else silent
         self.times: list[Vector] = []
+        self.failed = False  # whether its last run did
         self._run: Run | None = None
 
     @property
@@ -79,6 +85,12 @@ class Subject:
         )
 
     @cached_property
+    def span(self) -> tuple[float, float]:
+        """From when to when in s the run goes, as far as no signal is read later."""
+        begin, end = self.conditions.options.get("span") or span_of(self.model, self.parameters)
+        return begin, end
+
+    @cached_property
     def t(self) -> Vector:
         """The sample times (N,) in s that count, and the end of a span that is given.
 
@@ -86,7 +98,7 @@ class Subject:
         """
         c = self.conditions
         times = c.options.get("times")
-        begin, end = c.options.get("span") or span_of(self.model, self.parameters)
+        begin, end = self.span
         first = begin if c.since is None else max(begin, c.since)
         if c.samples is not None and first < end:
             return np.linspace(first, end, c.samples)
@@ -107,17 +119,25 @@ class Subject:
     @cached_property
     def early(self) -> Vector:
         """As many times in s from the begin of the run to the samples that count."""
-        c = self.conditions
-        begin, _ = c.options.get("span") or span_of(self.model, self.parameters)
-        if c.since is None or not begin < self.t[0]:
+        if self.conditions.since is None or not self.span[0] < self.t[0]:
             return np.empty(0)
+        begin, _ = self.span
         return np.linspace(begin, self.t[0], len(self.t) + 1)[:-1]
 
     def ask(self, name: str, times: Vector | None = None) -> None:
-        """Tell that a signal will be asked for, at times (M,) in s beside those of its samples."""
-        self.recorder.ask(name)
+        """Tell that a signal will be asked for, at times (M,) in s beside those of its samples.
+
+        Raises OptionError where a time is before the run begins.
+        """
         if times is not None:
+            begin, first = self.span[0], float(np.min(times, initial=math.inf))
+            if first < begin:
+                what = (
+                    f"a quantity reads a signal at {first:g} s, and the run begins at {begin:g} s"
+                )
+                raise OptionError([Problem(what, hint="Write run: {from: ...} in the statement.")])
             self.times.append(times)
+        self.recorder.ask(name)
 
     def signal(self, name: str, times: Vector | None = None) -> Vector:
         """A signal or state in SI at the samples, or at `times` (M,) in s within the span."""
@@ -137,15 +157,18 @@ class Subject:
 
     def _simulated(self) -> Run:
         """The run with all signals and times that were asked for."""
+        self.failed = True
+        run = self._simulated_once()
+        self.failed = False
+        return run
+
+    def _simulated_once(self) -> Run:
         model, c = self.model, self.conditions
         spaced = c.since is not None or c.samples is not None or "span" in c.options
         if not self.times and not spaced:
             return simulate(model, **c.options)
         times = np.unique(np.concatenate([self.t, *(t.ravel() for t in self.times)]))
-        begin, end = c.options.get("span") or span_of(self.model, self.parameters)
-        if times[0] < begin:
-            what = f"a quantity reads a signal at {times[0]:g} s, and the run begins at {begin:g} s"
-            raise OptionError([Problem(what, hint="Write run: {from: ...} in the statement.")])
+        begin, end = self.span
         end = max(end, float(times[-1]))  # a signal may be read later than samples count
         own = ("span", "times", "every")
         options = {key: value for key, value in c.options.items() if key not in own}
