@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import ast
+import inspect
 import re
 from pathlib import Path
 
 import pytest
+import tracewire as tw
+import tracewire.show
+from tracewire.cli.analyse import analyse
 from tracewire.compile import compile
 from tracewire.diagram import read_text
 from tracewire.diagram.grammar import EFFECT, EVENT, INSIDE, SERIES, SETTING, STATEMENT, TOP
@@ -61,6 +65,19 @@ def test_every_quantity_and_key_of_a_statement_is_on_the_page() -> None:
     assert [name for name in QUANTITIES if f"| `{name}(" not in page] == []
     keys = {*STATEMENT, *SETTING, "full", "diagram"}
     assert {key for key in keys if f"`{key}`" not in page} == set()
+
+
+def test_each_kind_of_analysis_is_on_the_page_with_its_function() -> None:
+    page = (DOCS / "analyse.md").read_text(encoding="utf-8")
+    table = re.findall(r"^\| `(\w+)` \| `([\w.]+)` \| a (\w+) \|$", page, re.MULTILINE)
+    kinds = [
+        command.callback.__name__ for command in analyse.registered_commands if command.callback
+    ]
+    assert [kind for kind, _, _ in table] == kinds
+    for _, function, of in table:
+        name = function.removeprefix("tw.").removeprefix("tracewire.show.")
+        found = getattr(tw if function.startswith("tw.") else tracewire.show, name)
+        assert next(iter(inspect.signature(found).parameters)) == of
 
 
 def rows() -> list[tuple[str, str]]:
