@@ -18,6 +18,7 @@ BLOCKS = ROOT / "blocks"
 # a room may import itself and the rooms before it
 ROOMS = [
     "errors",
+    "arguments",
     "extras",
     "files",
     "npm",

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any, TypeVar, get_origin, get_type_hints
 
+from tracewire.arguments import misfits
 from tracewire.errors import OptionError, Problem, unknown
 
 T = TypeVar("T")
@@ -36,14 +37,15 @@ def options_of(
         Problem(f"{name!r} is no option of {what}", hint=f"It is an argument: {name}=...")
         for name in beside
     ]
-    problems += _unknown(kind, {n: v for n, v in given.items() if n not in beside}, what)
+    problems += _wrong(kind, {n: v for n, v in given.items() if n not in beside}, what)
     if problems:
         raise OptionError(problems)
     return _made(kind, given)
 
 
-def _unknown(kind: type[Any], given: Mapping[str, Any], what: str) -> Iterator[Problem]:
-    """The names that no field of a record has, those of records inside included."""
+def _wrong(kind: type[Any], given: Mapping[str, Any], what: str) -> Iterator[Problem]:
+    """The names that no field of a record has, and values of another kind, also those of records
+    inside."""
     hints = get_type_hints(kind)
     names = [field.name for field in fields(kind)]
     for name, value in given.items():
@@ -52,7 +54,10 @@ def _unknown(kind: type[Any], given: Mapping[str, Any], what: str) -> Iterator[P
             hint = f"Write {alike[0]!r}." if alike else ""
             yield unknown(f"option of {what}", str(name), names, hint=hint)
         elif is_dataclass(hints[name]) and isinstance(value, Mapping):
-            yield from _unknown(hints[name], value, f"{what}, {name}")
+            yield from _wrong(hints[name], value, f"{what}, {name}")
+        else:
+            for wrong in misfits(str(name), value, hints[name]):
+                yield Problem(f"{what}: {wrong}")
 
 
 def _made(kind: type[T], given: Mapping[str, Any]) -> T:

@@ -10,7 +10,7 @@ import tracewire as tw
 from diagram.small_library import LIBRARY, PENDULUM, made
 from tracewire.compile import compile as compile_model
 from tracewire.diagram import Value, Wire, find_parameter, read, read_text
-from tracewire.errors import DiagramError, Location
+from tracewire.errors import DiagramError, Location, OptionError
 from tracewire.formula import Name, Number, parse, to_text
 from tracewire.solve import parameter_values
 
@@ -271,5 +271,7 @@ blocks:
 @pytest.mark.parametrize("use", [tw.simulate, tw.fit, tw.trace])
 def test_a_diagram_in_the_place_of_a_model_says_so(use: Callable[[Any], object]) -> None:
     diagram = made(PENDULUM)
-    with pytest.raises(AttributeError, match=r"Where a model is meant: tracewire\.compile"):
+    with pytest.raises(OptionError, match=r"is a Diagram, and not a model.* tracewire\.compile"):
         use(diagram)
+    with pytest.raises(AttributeError, match=r"Where a model is meant: tracewire\.compile"):
+        diagram.flat  # type: ignore[attr-defined]  # noqa: B018

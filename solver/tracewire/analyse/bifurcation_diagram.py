@@ -19,6 +19,7 @@ from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.poincare_section import extent_of, take_points
 from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import interrupted
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.options import options_of
@@ -100,6 +101,7 @@ class Bifurcation(Result):
         raise OptionError([unknown("branch", direction, [b.direction for b in self.branches])])
 
 
+@checked
 def bifurcation(
     model: Model,
     parameter: str,

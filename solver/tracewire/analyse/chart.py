@@ -14,6 +14,7 @@ from tracewire.analyse.floquet_multipliers import Tries
 from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.work import work_through
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
@@ -50,6 +51,7 @@ class StabilityChart(Result):
         return np.nan_to_num(self.radius) > 1.0 + self.tolerance
 
 
+@checked
 def stability_chart(
     model: Model,
     x: tuple[str, ArrayLike],

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import number, period_of
 from tracewire.analyse.limits import ORBIT
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
@@ -85,6 +86,7 @@ class Floquet(Result):
         return np.delete(found, int(np.argmin(np.abs(found - 1.0))))
 
 
+@checked
 def floquet(
     model: Model,
     period: float | str,

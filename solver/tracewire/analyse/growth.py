@@ -11,6 +11,7 @@ from scipy.signal import find_peaks
 
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import floor_of, signal_of, vertex
+from tracewire.arguments import checked
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -40,6 +41,7 @@ class GrowthRate(Result):
     size: Vector
 
 
+@checked
 def growth_rate(
     run: Run,
     signal: str,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -40,6 +41,7 @@ class Drift(Result):
         )
 
 
+@checked
 def invariant_drift(
     run: Run, names: Sequence[str], *, scale: Mapping[str, float] | float | None = None
 ) -> tuple[Drift, ...]:

@@ -16,6 +16,7 @@ from tracewire.analyse.characteristic import characteristic_roots
 from tracewire.analyse.equilibrium import describe_rates, is_steady, state_sizes
 from tracewire.analyse.internal_delays import InternalDelays
 from tracewire.analyse.limits import EQUILIBRIUM
+from tracewire.arguments import checked
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import to_text
@@ -106,6 +107,7 @@ class Linear(Result):
         )
 
 
+@checked
 def linearise(
     model: Model,
     *,

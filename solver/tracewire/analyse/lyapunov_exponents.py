@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.plane import span_of
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.result import Result
@@ -65,6 +66,7 @@ class Lyapunov(Result):
         return whole + float(sums[whole - 1] / abs(self.exponents[whole]))
 
 
+@checked
 def lyapunov(
     model: Model,
     length: float,

@@ -13,6 +13,7 @@ from tracewire.analyse.drive import is_driven, number, period_of
 from tracewire.analyse.floquet_multipliers import Floquet
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.turns import units_of, within_a_turn
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, SimulationError
 from tracewire.result import Result
@@ -46,6 +47,7 @@ class PeriodicOrbit(Result):
         return float(self.x[self.states.index(name)])
 
 
+@checked
 def periodic_orbit(
     model: Model,
     period: float | str,

@@ -13,6 +13,7 @@ from tracewire.analyse.clusters import count_clusters, is_irregular
 from tracewire.analyse.limits import SECTION
 from tracewire.analyse.plane import Plane, crossings, span_of
 from tracewire.analyse.turns import units_of
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
@@ -46,6 +47,7 @@ class PoincareSection(Result):
         return np.asarray(self.points[:, self.states.index(name)])
 
 
+@checked
 def section(
     model: Model,
     plane: Plane | Mapping[str, Any],

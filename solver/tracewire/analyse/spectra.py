@@ -11,6 +11,7 @@ from scipy.signal import find_peaks, get_window
 
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of
+from tracewire.arguments import checked
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -46,6 +47,7 @@ class Spectrum(Result):
     lines: tuple[Line, ...]
 
 
+@checked
 def spectrum(
     run: Run,
     signal: str,

@@ -19,6 +19,7 @@ from tracewire.analyse.quantities import (
     measure,
     silent,
 )
+from tracewire.arguments import checked
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, Setting, Statement, read
 from tracewire.errors import TracewireError
@@ -188,6 +189,7 @@ class Judge:
         return Judged(statement, value, bounds, verdict, why, time.perf_counter() - began)
 
 
+@checked
 def judge(
     diagram: Diagram,
     *,

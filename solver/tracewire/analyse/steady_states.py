@@ -12,6 +12,7 @@ from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_driven
 from tracewire.analyse.equilibrium import find_equilibrium
 from tracewire.analyse.linearisation import linearise, nonsmooth
+from tracewire.arguments import checked
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
@@ -51,6 +52,7 @@ class SteadyState(Result):
         return dict(zip(self.states, self.x.tolist(), strict=True))
 
 
+@checked
 def steady_state(
     model: Model,
     *,

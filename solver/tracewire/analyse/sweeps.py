@@ -25,6 +25,7 @@ from tracewire.analyse.quantities import (
     measure,
 )
 from tracewire.analyse.work import IncompleteRow, work_through
+from tracewire.arguments import checked
 from tracewire.compile import Model, unit_of_quantity
 from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
@@ -73,6 +74,7 @@ class Sweep(Result):
         return self.values[name]
 
 
+@checked
 def sweep(
     model: Model,
     grid: Mapping[str, ArrayLike],

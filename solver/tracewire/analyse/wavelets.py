@@ -10,6 +10,7 @@ from scipy.fft import fft, ifft, next_fast_len
 
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of, vertex
+from tracewire.arguments import checked
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
 from tracewire.solve import Run
@@ -38,6 +39,7 @@ class Scalogram(Result):
     ridge: Vector
 
 
+@checked
 def scalogram(
     run: Run,
     signal: str,

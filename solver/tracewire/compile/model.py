@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
+from tracewire.arguments import checked
 from tracewire.compile.differentiate import gradients
 from tracewire.compile.flat import Flat
 from tracewire.compile.flatten import flatten
@@ -218,6 +219,7 @@ class Model:
         return names, self.routines.evaluate("signals", t, x, m, p, k)
 
 
+@checked
 def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "llvm") -> Model:
     """The model of a diagram.
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
+from tracewire.arguments import checked
 from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
 from tracewire.diagram.choose import NUMBER, with_number
@@ -50,6 +51,7 @@ from tracewire.formula import names_of
 from tracewire.library import Block, Library, load_library
 
 
+@checked
 def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
     """The checked diagram of a YAML file.
 
@@ -64,6 +66,7 @@ def read(path: str | Path, libraries: Iterable[str | Path] = ()) -> Diagram:
     return read_text(load_text(file), file, library=library)
 
 
+@checked
 def read_text(
     text: str,
     file: Path = Path("<text>"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from tracewire.arguments import checked
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.edit_series import path_text, text_from
@@ -21,6 +22,7 @@ from tracewire.errors import DiagramError, Location, OptionError
 from tracewire.files import write_file
 
 
+@checked
 def write(diagram: Diagram, path: str | Path, overwrite: bool = False) -> Path:
     """Write the diagram's text to a file, and return its path. In another folder measured files,
     and the schema that its first line names to an editor, get the path from there.

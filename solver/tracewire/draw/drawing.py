@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from tracewire.arguments import checked
 from tracewire.diagram import Diagram
 from tracewire.draw.build import DrawOptions, graph_of
 from tracewire.draw.graph import Graph
@@ -62,6 +63,7 @@ ENDINGS: dict[str, Callable[[Drawing], str | bytes]] = {
 """What a picture becomes by the ending of its file."""
 
 
+@checked
 def draw(
     diagram: Diagram,
     depth: int = 0,

@@ -10,6 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr, ndtri
 
+from tracewire.arguments import checked
 from tracewire.errors import FormulaError, SimulationError
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison, Fit
@@ -85,6 +86,7 @@ class Diagnosis:
         return self.whiteness >= DIAGNOSIS.doubt or bool(largest < DIAGNOSIS.notable)
 
 
+@checked
 def diagnose(fit: Fit) -> tuple[Diagnosis, ...]:
     """Every measured signal of every series of a fit, in the order of its comparisons.
 

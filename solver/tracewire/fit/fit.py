@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
@@ -58,6 +59,7 @@ AMPLE = "10000*numberofvariables"
 """The limits of a method that is not Scilab's, where no options are given."""
 
 
+@checked
 @one_blas_thread()
 def fit(
     model: Model,

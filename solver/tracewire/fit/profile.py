@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.blas import one_blas_thread
 from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.limits import PROFILE
@@ -44,6 +45,7 @@ class Profile(Result):
     words: str
 
 
+@checked
 @one_blas_thread()
 def profile(
     fit: Fit,

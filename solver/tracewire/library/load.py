@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from tracewire.arguments import checked
 from tracewire.errors import BlockError, Location, Problem
 from tracewire.library.declare import Block
 from tracewire.shipped import shipped
@@ -45,6 +46,7 @@ class Library:
         return {name: block for name, block in self.blocks.items() if block.effect is not None}
 
 
+@checked
 def load_library(extra: Iterable[str | Path] = ()) -> Library:
     """The shipped blocks, and those of the files and folders that the user names.
 

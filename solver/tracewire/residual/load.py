@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.data import Record, input_remarks
 from tracewire.diagram import Series
@@ -37,6 +38,7 @@ def measured_series(model: Model, name: str) -> Measured:
     return load_measured(model, driving=True, series=[name])[0]
 
 
+@checked
 def load_measured(
     model: Model,
     uses: Iterable[str] = (),

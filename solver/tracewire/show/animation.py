@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.files import replacing, write_file
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 ENDINGS = (".gif", ".mp4")
 
 
+@checked
 def animate(
     run: Run,
     path: str | Path,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from tracewire.arguments import checked
 from tracewire.fit import Fit, Profile
 from tracewire.residual import Measured
 from tracewire.show.diagram_picture import diagram_figure
@@ -22,6 +23,7 @@ from tracewire.trace import Found
 NUMERIC = frozenset({1})
 
 
+@checked
 def report(
     subject: Run | Fit | Found,
     profiles: Sequence[Profile] = (),

@@ -14,6 +14,7 @@ from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from tracewire.arguments import checked
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.show.style import drawn
@@ -112,6 +113,7 @@ class Presented:
         return Problem(f"a {type(self.result).__name__} has no {what}", hint=hint)
 
 
+@checked
 def present(result: Result) -> Presented:
     """A result as it shows itself."""
     room = type(result).__module__.split(".")[1]

@@ -12,6 +12,7 @@ from typing import Any, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, TracewireError, unknown
 from tracewire.solve.interrupt import Interrupted
@@ -27,6 +28,7 @@ Matrix = NDArray[np.float64]
 Cube = NDArray[np.float64]
 
 
+@checked
 def simulate_many(
     model: Model,
     rows: Sequence[Row] | Mapping[str, ArrayLike],

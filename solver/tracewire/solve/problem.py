@@ -10,6 +10,7 @@ from typing import TypedDict, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.arguments import checked
 from tracewire.compile import OF_THE_PAST, Model
 from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.options import options_of
@@ -119,6 +120,7 @@ def _numbers(
     )
 
 
+@checked
 def initial_value_problem(
     model: Model,
     sensitivities: Sequence[str] = (),

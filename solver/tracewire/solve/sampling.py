@@ -36,7 +36,8 @@ def span_of(
     times: Vector | None,
 ) -> tuple[float, float]:
     """Begin and end in s: the span that is given, or the diagram's. Raises OptionError."""
-    begin, end = span or (evaluate(formula, values) for formula in model.flat.span)
+    own = (evaluate(formula, values) for formula in model.flat.span)
+    begin, end = own if span is None else span
     if span is None and times is not None:
         begin, end = min(begin, times[0]), times[-1]
     begin, end = float(begin), float(end)

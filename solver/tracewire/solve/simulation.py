@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from numpy.typing import ArrayLike
 
+from tracewire.arguments import checked
 from tracewire.compile import Model
 from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Interrupted
@@ -15,6 +16,7 @@ from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import Run
 
 
+@checked
 def simulate(
     model: Model,
     *,

@@ -17,6 +17,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
+from tracewire.arguments import checked
 from tracewire.diagram import Diagram, read_text
 from tracewire.errors import Location, OptionError, Problem, TracewireError
 from tracewire.files import write_file, writing
@@ -38,6 +39,7 @@ class _DamagedError(Exception):
     """Data that are not what a field of a trace holds; the text says where."""
 
 
+@checked
 def save(found: Found, path: str | Path) -> Path:
     """Write a trace to a JSON file, with all that its report needs; the path of the file.
 
@@ -50,6 +52,7 @@ def save(found: Found, path: str | Path) -> Path:
         return write_file(path, text)
 
 
+@checked
 def load(path: str | Path, libraries: Iterable[str | Path] = ()) -> Found:
     """The trace that `save`, or `tracewire trace --save`, has written.
 

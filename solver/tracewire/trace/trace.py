@@ -8,6 +8,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from tracewire.arguments import checked
 from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.errors import Problem, TracewireError
@@ -49,6 +50,7 @@ from tracewire.trace.trials.data_split import shortest_window, split_data
 from tracewire.trace.trials.trial import TraceProblem
 
 
+@checked
 @one_blas_thread()
 def trace(
     subject: Model | Fit,
