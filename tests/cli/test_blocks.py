@@ -52,6 +52,33 @@ def test_effects_are_listed_with_place_and_meaning(call: Any) -> None:
     assert len(rows) == len(lines) - 1
 
 
+def test_an_effect_of_a_sensor_is_described(call: Any, tmp_path: Path) -> None:
+    assert call("blocks", "sensor_drift").out.splitlines() == [
+        "sensor_drift: A drift. It is no block: a measured signal has it.",
+        "",
+        "formula",
+        "  shown = z + drift*(t - t0), where z is the signal and t0 the time of the first sample",
+        "",
+        "number",
+        "  drift  [unit of the column/s]  default 0",
+        "",
+        "in a diagram, where a fit may change it",
+        "  signals: {x: {column: x, drift: {fit: [-1, 1]}}}",
+        "",
+        "An effect that a trace tries at each sensor: coefficient drift, of either sign.",
+    ]
+    rows = call("blocks", "--effects", "--json").data["effects"]
+    sensors = [row for row in rows if row["place"] == "of a sensor"]
+    for row in sensors:
+        told = call("blocks", row["effect"], "--json").data
+        assert (told["name"], told["doc"]) == (row["effect"], row["what"])
+        (number,) = told["parameters"]
+        assert f"{number['name']}: {{fit:" in told["written"]
+    assert call("blocks", "sensor_gain", "--json").data["parameters"][0]["low"] == 0
+    told = call("blocks", "sensor_gain", "--report", tmp_path / "a.html")
+    assert told.code == 2 and "is an effect of a sensor, and a report is of blocks" in told.err
+
+
 def test_effects_are_no_block_and_stand_alone(call: Any) -> None:
     told = call("blocks", "effects")
     assert told.code == 2 and "'tracewire blocks --effects' lists the effects" in told.err

@@ -265,8 +265,11 @@ def test_check_lists_all_that_is_free_in_a_fit(call: Any, cart: Path) -> None:
     assert "free in a fit: c, offset.x, delay.x, start.v\n" in told.out
 
 
-def test_what_a_sensor_does_is_no_block(call: Any) -> None:
-    told = call("blocks", "sensor_delay")
+def test_what_a_sensor_does_is_no_block(call: Any, cart: Path) -> None:
+    extra = "blocks:\n  s: {type: sensor_delay, of: x}\n"
+    text = cart.read_text(encoding="utf-8").replace("blocks:\n", extra)
+    cart.write_text(text, encoding="utf-8")
+    told = call("check", cart)
     assert told.code == 2
     assert "signals: {x: {column: x, delay: ...}}" in told.err
     assert "there are" not in told.err

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tracewire.diagram import Channel
+from tracewire.formula import evaluate, parse
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual import Sensor
 
@@ -30,6 +31,16 @@ def test_a_slope_is_the_derivative_of_what_is_shown(name: str) -> None:
     moved: dict[str, Any] = {name: getattr(sensor, name) + 1.0}  # each number enters linearly
     change = replace(sensor, **moved).observe(Z, SINCE) - sensor.observe(Z, SINCE)
     np.testing.assert_allclose(change, np.broadcast_to(slope(Z, SINCE), 3), rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", SENSOR_TERMS)
+def test_the_formula_that_is_told_is_what_a_sensor_shows(name: str) -> None:
+    known = SENSOR_TERMS[name]
+    formula = parse(known.shown)
+    sensor = Sensor(**{name: 0.7})  # type: ignore[arg-type]
+    for z, since, shown in zip(Z, SINCE, sensor.observe(Z, SINCE), strict=True):
+        values = {"z": z, "t": 3 + since, "t0": 3.0, name: 0.7}
+        assert evaluate(formula, values) == pytest.approx(shown)
 
 
 def test_a_number_is_scaled_as_its_unit_says() -> None:

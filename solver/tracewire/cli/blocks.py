@@ -108,6 +108,7 @@ def _found(name: str | None, libraries: Sequence[str]) -> _Found:
         installed_packages,
         load_library,
         package_blocks,
+        sensor_effect,
     )
 
     known = load_library(libraries)
@@ -116,7 +117,8 @@ def _found(name: str | None, libraries: Sequence[str]) -> _Found:
         return _Found(known, others=packages)
     library, dot, _ = name.partition(".")
     if name in known or (not dot and name not in {package.name for package in packages}):
-        if name not in known and find_synonym(name, [*known]) is None:
+        found = name in known or sensor_effect(name) or find_synonym(name, [*known])
+        if not found:
             _refuse_of_others(name)
         return _Found(known, name)
     package = find_package(library)
@@ -201,10 +203,13 @@ def _listed(head: str, rows: Mapping[str, str]) -> str:
 
 def _write(report: str, found: _Found) -> str:
     """Write the page of what was found; the path of it."""
-    from tracewire.library import Library, describe_json
+    from tracewire.library import Library, describe_json, sensor_effect
     from tracewire.show import library_report
 
     library, title = found.library, found.title or "The blocks of tracewire"
+    if found.block not in library and sensor_effect(found.block):
+        what = f"'{found.block}' is an effect of a sensor, and a report is of blocks"
+        raise OptionError.one(what, hint="Leave --report out, or give --json.")
     if found.block:
         title = str(describe_json(library, found.block)["name"])  # by its name here
         library = Library({title: library[title]}, library.families)

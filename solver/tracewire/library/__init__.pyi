@@ -28,6 +28,7 @@ from .packages import (
 )
 from .parts import Event, Input, Mode, Output, Parameter, State, Transition
 from .sensor import SENSOR_TERMS
+from .sensor_description import sensor_effect
 from .synonyms import find_instead, find_synonym
 
 __all__ = [
@@ -72,6 +73,7 @@ __all__ = [
     "package_file",
     "packages_with",
     "palette",
+    "sensor_effect",
     "subsystem_files",
     "wiring",
 ]

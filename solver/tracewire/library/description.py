@@ -11,6 +11,13 @@ from tracewire.library.effect import SCALES, SYMBOLS, Effect, Shape
 from tracewire.library.load import Library
 from tracewire.library.parts import ByMode, Event, Input, Mode, Output, Parameter, Transition
 from tracewire.library.sensor import SENSOR_TERMS
+from tracewire.library.sensor_description import (
+    PREFIX,
+    describe_sensor,
+    describe_sensor_json,
+    sensor_doc,
+    sensor_effect,
+)
 from tracewire.library.synonyms import OTHERWISE, find_instead, find_synonym, other_names
 
 
@@ -26,8 +33,7 @@ def effect_rows(library: Library) -> list[tuple[str, str, str]]:
     for kind, words in (("sum", "at a sum"), ("drive", "in a drive")):
         kinds = {n: b for n, b in library.effects().items() if b.effect and b.effect.place == kind}
         rows += [(words, name, kinds[name].doc) for name in sorted(kinds)]
-    sensors = [(f"sensor_{name}", term.words) for name, term in SENSOR_TERMS.items()]
-    rows += [("of a sensor", name, f"{text[0].upper()}{text[1:]}.") for name, text in sensors]
+    rows += [("of a sensor", f"{PREFIX}{term}", sensor_doc(term)) for term in SENSOR_TERMS]
     return rows
 
 
@@ -51,8 +57,11 @@ class Description:
 def describe(library: Library, name: str) -> str:
     """One block in full, as plain text: ports, parameters, states, formulas, modes, events, source.
 
-    A name of another tool finds the block that it is here. Raises BlockError: there is none.
+    A name of another tool finds the block that it is here, and the name of an effect of a sensor
+    that effect. Raises BlockError: there is none.
     """
+    if name not in library and (term := sensor_effect(name)):
+        return describe_sensor(term)
     name, same = _find(library, name)
     block = library[name]
     lines = [same, ""] if same else []
@@ -132,8 +141,10 @@ def describe_origin(name: str, block: Block) -> list[str]:
 def describe_json(library: Library, name: str) -> dict[str, object]:
     """One block in full, in lists and dictionaries that `json` can write.
 
-    A name of another tool finds the block that it is here. Raises BlockError: there is none.
+    What a name finds is what it finds for `describe`. Raises BlockError: there is none.
     """
+    if name not in library and (term := sensor_effect(name)):
+        return describe_sensor_json(term)
     name, _ = _find(library, name)
     block = library[name]
     feedthrough = {o.name: _feedthrough(block, o.name) for o in block.outputs}
