@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tracewire.formula.common_units import COMMON
+from tracewire.formula.units import SYMBOLS
 from tracewire.shipped import shipped
 
 CART = """\
@@ -226,8 +228,12 @@ def test_a_diagram_from_stdin_is_checked(
 
 def test_units_are_listed_and_explained(call: Any) -> None:
     listed = call("units")
-    assert "\nacceleration: m/s^2, " in listed.out
+    assert "\nacceleration:  m/s^2, " in listed.out
     assert "deg = 0.0174533 rad" in listed.out
+    assert "\ncharge:        C, mC = 0.001 C, " in listed.out
+    data = call("units", "--json").data
+    names = [name for group in data.values() for name in group]
+    assert {*SYMBOLS, *COMMON} <= {*names} and len(names) == len({*names})
     assert call("units", "mN m s/deg").out == "1 mN m s/deg = 0.0572957795131 N m s/rad\n"
     assert call("units", "furlong", "--json").data["factor"] == pytest.approx(201.168, rel=1e-5)
     wrong = call("units", "degC")

@@ -26,6 +26,7 @@ from .parser import (
 )
 from .quantities import QUANTITIES, Quantity
 from .text import number_text, to_text
+from .unit_list import PREFIXES, unit_list
 from .unit_rules import Term, times, unit_term
 from .units import Unit, has_offset, quantity_hint, read_unit, same_quantity
 
@@ -35,6 +36,7 @@ __all__ = [
     "DELAYS",
     "FUNCTIONS",
     "OPERATIONS",
+    "PREFIXES",
     "QUANTITIES",
     "Call",
     "Expression",
@@ -67,5 +69,6 @@ __all__ = [
     "same_quantity",
     "times",
     "to_text",
+    "unit_list",
     "unit_term",
 ]

@@ -20,14 +20,17 @@ OFFSET = re.compile(
     r"(?<![A-Za-z])(deg(ree)?_?|°)(C|F|celsius|fahrenheit)(?![A-Za-z])", re.IGNORECASE
 )
 
-SYMBOL = r"(?:kg|mol|cd|rad|sr|Hz|Pa|Wb|Ohm|m|s|A|K|N|J|W|C|V|F|S|T|H)"
+SYMBOLS = ("kg", "mol", "cd", "rad", "sr", "Hz", "Pa", "Wb", "Ohm", "m", "s", "A", "K", "N", "J",
+    "W", "C", "V", "F", "S", "T", "H")  # fmt: skip
+"""The coherent units of SI that have a symbol; none stands behind one that it begins with."""
+SYMBOL = rf"(?:{'|'.join(SYMBOLS)})"
 POWER = r"(?:\s*(?:\^|\*\*)\s*[+-]?\d{1,2}(?:\.\d{1,2})?)"
 COHERENT = re.compile(rf"(?:1|{SYMBOL}{POWER}?)(?:(?:\s*[*/]\s*|\s+){SYMBOL}{POWER}?)*")
 """Products and quotients of coherent SI units: their factor is 1, and they need no unit library."""
 TORQUE = re.compile(r"\b([kmuµμn]?N)m\b")
 """`Nm` and `mNm`, as headers of files have it; the unit library takes it for a number of metres."""
 OHM = re.compile(r"(?<=[A-Za-zµμ])Ohm\b")
-"""`kOhm`: the unit library knows `kohm`, and `Ohm` alone."""
+"""`kOhm`: the unit library knows `kohm`, as it knows `ohm`."""
 GRAM = re.compile(r"(?<![A-Za-z])g(?![A-Za-z])")
 GRAVITY = "'g' is a gram. An acceleration in multiples of that of gravity has the unit 'gravity'."
 WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|[*/](?!\*))+")
@@ -123,7 +126,7 @@ def same_quantity(one: str, other: str) -> bool:
         read_unit(text)
     if one.strip() == other.strip():
         return True
-    both = (OHM.sub("ohm", TORQUE.sub(r"\1 m", text)).strip() or "1" for text in (one, other))
+    both = (TORQUE.sub(r"\1 m", text).replace("Ohm", "ohm").strip() or "1" for text in (one, other))
     first, second = (_registry().parse_units(text) for text in both)
     return bool(first.is_compatible_with(second))
 
