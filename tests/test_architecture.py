@@ -495,7 +495,6 @@ def test_a_file_that_is_not_written_whole_is_found(source: str, found: int) -> N
 
 
 def test_generated_source_is_executed_in_one_place_of_a_file() -> None:
-    once, twice = "exec(code, names)", "exec(code, names)\nexec(code, names)"
-    assert runs_text("compile/source.py", once, {}) == []
-    assert len(runs_text("compile/source.py", twice, {})) == 1
-    assert len(runs_text("solve/source.py", once, {})) == 1
+    assert runs_text("compile/source.py", "exec(code, names)", {}) == []
+    assert len(runs_text("compile/source.py", "exec(code, names)\nexec(code, names)", {})) == 1
+    assert len(runs_text("solve/source.py", "exec(code, names)", {})) == 1

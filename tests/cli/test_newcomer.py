@@ -407,7 +407,8 @@ def test_results_are_in_the_unit_that_is_asked_for(
 
 def test_a_unit_that_the_equations_contradict_is_refused(call: Any, pendulum: Path) -> None:
     pendulum.write_text(
-        "blocks: {body: {type: hard_stop, high: {value: 1, unit: m}, start_rate: 1}}",
+        "parameters: {end: {value: 1, unit: m}}\n"
+        "blocks: {body: {type: hard_stop, high: end, start_rate: 1}}",
         encoding="utf-8",
     )
     told = call("run", pendulum, "--unit", "body.x=bar")

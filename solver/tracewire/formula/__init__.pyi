@@ -26,7 +26,7 @@ from .parser import (
 )
 from .quantities import QUANTITIES, Quantity
 from .text import number_text, to_text
-from .unit_list import PREFIXES, unit_list
+from .unit_names import PREFIXES, unit_list
 from .unit_rules import Term, times, unit_term
 from .units import Unit, has_offset, quantity_hint, read_unit, same_quantity
 
