@@ -224,7 +224,7 @@ def test_a_file_without_a_column_of_time(file: Path) -> None:
         ("time: t, weight: 0", "'weight' of series 'run' must be above zero, not 0"),
         ("time: t, burn_in: -1", "'burn_in' of series 'run' must not be negative, and is -1"),
         ("time: t, where: drop", "'where' of series 'run' must be a mapping. Write it like {ball:"),
-        ("time: t, where: {drop: [1]}", "'drop' of 'where' must be a text"),
+        ("time: t, where: {drop: [1]}", "'drop' of 'where' must be a text or a number"),
         ("time: t, format: ;", "'format' of series 'run' must be a mapping"),
         ("time: t, format: {decimal: x}", "'decimal' is '.' or ','. Put it into quotes."),
         (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tracewire.formula import Call, Expression, Name, Number, parse, to_text
+from tracewire.formula import Call, Expression, Name, Number, parse, to_text, two_digits
 from tracewire.formula.functions import FUNCTIONS
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False).map(Number)
@@ -86,3 +86,11 @@ def test_text_has_no_more_brackets_than_a_person_writes(text: str) -> None:
 
 def test_brackets_that_say_nothing_are_left_out() -> None:
     assert to_text(parse("((a)*(b)) + (c**(2.0))")) == "a*b + c**2"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(264.0, "260"), (1449.0, "1400"), (0.00316, "0.0032"), (-12.6, "-13"), (3e-7, "3e-07")],
+)
+def test_two_digits_are_written_out(value: float, text: str) -> None:
+    assert two_digits(value) == text

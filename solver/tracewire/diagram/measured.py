@@ -220,8 +220,12 @@ class _Series:
         for name, _, given in entries or ():
             if isinstance(given, Scalar) and given.number is not None:
                 found[name] = given.number
-            elif (text := self.body.text(given, f"'{clip(name)}' of 'where'")) is not None:
-                found[name] = text
+            elif isinstance(given, Scalar):
+                found[name] = given.text.strip()
+            else:
+                what = f"'{clip(name)}' of 'where' must be a text or a number"
+                hint = "Of several values each has a series of its own."
+                self.body.problems.add(what, self.body.place(given), (), hint)
         return found
 
     def format(self) -> Format:

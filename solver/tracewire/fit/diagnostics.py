@@ -14,7 +14,7 @@ from tracewire.arguments import checked
 from tracewire.errors import FormulaError, SimulationError
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison, Fit
-from tracewire.formula import Expression, evaluate, names_of
+from tracewire.formula import Expression, evaluate, names_of, two_digits
 from tracewire.residual import (
     WINDOW,
     InputNoise,
@@ -286,35 +286,37 @@ def _with_words(found: Diagnosis, measured: Measured, finished: bool) -> Diagnos
     ]
     doubtful = estimate is not None and not estimate.is_sure
     lacks = False
-    over = f"correlated over {found.memory:.2g} s"
+    over = f"correlated over {two_digits(found.memory)} s"
     if of_inputs:
         names = " and ".join(f"'{name}'" for name in measured.input_sigma)
         words = [
             f"at the noise of the measured input {names}, which explains it",
-            f"Without that, the residual is {found.size / found.noise:.2g} times the noise",
+            f"Without that, the residual is {two_digits(found.size / found.noise)} times the noise",
         ]
     elif estimate and doubtful and limit < found.size <= DIAGNOSIS.at_noise * estimate.high:
         unit, factor = found.users_unit
         low, high = estimate.low / factor, estimate.high / factor
-        between = f"{low:.2g} and {high:.2g} {unit or found.unit}".rstrip()
+        between = f"{two_digits(low)} and {two_digits(high)} {unit or found.unit}".rstrip()
         words = [
-            f"the residual is {times:.2g} times the noise and {over}",
+            f"the residual is {two_digits(times)} times the noise and {over}",
             "It may be noise alone: the noise is estimated to lie between "
             f"{between} ({estimate.method}). Write its `sigma:` where it is known",
         ]
     elif found.size > limit and not (found.is_white and not depends):
         correlated = "" if found.is_white else f" and {over}"
-        words = [f"the residual is {times:.2g} times the {source}{correlated}"]
+        words = [f"the residual is {two_digits(times)} times the {source}{correlated}"]
         lacks = finished
     elif found.size > limit:
         larger = "than declared" if found.declared else "than its differences tell"
-        words = [f"the residual is {times:.2g} times the {source}, yet white: the noise is larger"]
-        words[0] += f" {larger}"
+        words = [f"the residual is {two_digits(times)} times the {source}, yet white: the noise is"]
+        words[0] += f" larger {larger}"
     elif not found.is_white:
         words = [f"at the {source}, yet {over}"]
         words.append("Something small may be missing; the errors allow for it")
     elif times < 0.7 and found.declared:
-        words = [f"white, and {times:.2g} times the declared noise: sigma is declared too large"]
+        words = [
+            f"white, and {two_digits(times)} times the declared noise: sigma is declared too large"
+        ]
     else:
         words = [f"white, at the {source}"]
     if lacks:
@@ -331,6 +333,6 @@ def _with_words(found: Diagnosis, measured: Measured, finished: bool) -> Diagnos
     if depends:
         words.append(f"The residual depends on {' and '.join(depends)}, which drives the model")
     if found.outliers > 0.005 and not lacks:  # what a model lacks is large where it acts
-        share = f"{100 * found.outliers:.2g} %"
+        share = f"{two_digits(100 * found.outliers)} %"
         words.append(f"{share} are outliers, beyond {DIAGNOSIS.far:g} standard deviations")
     return replace(found, words=". ".join(words), is_missing=lacks)

@@ -11,7 +11,7 @@ from tracewire.compile import Model
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
-from tracewire.formula import Name
+from tracewire.formula import Name, two_digits
 from tracewire.residual import Criterion, Measured, begins_elsewhere
 
 Vector = NDArray[np.float64]
@@ -48,13 +48,13 @@ def unfinished(
     if not far and promised < DIAGNOSIS.promised:
         return (
             f"the search {ENDED}: the slope there promises to lower the residual to "
-            f"{promised:.2g} of it; {go_on}"
+            f"{two_digits(float(promised))} of it; {go_on}"
         )
     if not far:
         return ""
     most = max(far, key=lambda name: far[name])
     return (
-        f"the search {ENDED}: the slope there leads {most} {far[most]:.2g} standard "
+        f"the search {ENDED}: the slope there leads {most} {two_digits(far[most])} standard "
         f"errors further, so errors and intervals say nothing yet; {go_on}"
     )
 

@@ -25,7 +25,7 @@ from .parser import (
     parse_quantity,
 )
 from .quantities import QUANTITIES, Quantity
-from .text import number_text, to_text
+from .text import number_text, to_text, two_digits
 from .unit_names import PREFIXES, unit_list
 from .unit_rules import Term, times, unit_term
 from .units import Unit, has_offset, quantity_hint, read_unit, same_quantity
@@ -69,6 +69,7 @@ __all__ = [
     "same_quantity",
     "times",
     "to_text",
+    "two_digits",
     "unit_list",
     "unit_term",
 ]

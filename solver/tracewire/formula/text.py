@@ -17,6 +17,11 @@ def number_text(value: float) -> str:
     return text[:-2] if text.endswith(".0") else text
 
 
+def two_digits(value: float) -> str:
+    """The first two digits of a number, written out below a million: `260`, and not `2.6e+02`."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def to_text(expression: Expression) -> str:
     """The formula as a user would write it; parsing it again gives the same formula."""
     return _write(expression)[0]

@@ -13,7 +13,7 @@ from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
 from tracewire.errors import DataError, Problem
-from tracewire.formula import evaluate, names_of, quantity_hint, read_unit
+from tracewire.formula import evaluate, names_of, quantity_hint, read_unit, two_digits
 from tracewire.residual.endings import alike, endings
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.residual.limits import INPUT, REMARK
@@ -197,8 +197,8 @@ def _on_hold(series: Series, read: Record) -> list[str]:
         elif lost > INPUT.lost and spline_if_smooth(read.t, column) is None:
             found.append(
                 f"the input {name} has few samples a period: straight lines between them lose "
-                f"{100 * lost:.2g} % of its amplitude; say hold: smooth where it is smooth between "
-                "samples, hold: previous where each value acts until the next"
+                f"{two_digits(100 * lost)} % of its amplitude; say hold: smooth where it is smooth "
+                "between samples, hold: previous where each value acts until the next"
             )
     return found
 
@@ -216,7 +216,7 @@ def _on_sigma(model: Model, series: Series, read: Record) -> list[str]:
         seen, spread = noise_of_signal(column / factor, read.t), float(np.std(column / factor))
         if seen.is_sure and seen.low > REMARK.noisier * sigma:
             what = f"its samples scatter by {seen.level:.3g} {unit}".rstrip()
-            what += f", {seen.level / sigma:.2g} times that"
+            what += f", {two_digits(seen.level / sigma)} times that"
         elif 0 < spread < sigma:
             what = f"the whole signal varies by {spread:.3g} {unit}".rstrip() + " (rms)"
         else:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Diagnosis, Fit, Profile, diagnose
 from tracewire.fit.limits import DIAGNOSIS
+from tracewire.formula import two_digits
 from tracewire.show.limits import FIGURE, FIT
 from tracewire.show.style import (
     AFTER,
@@ -119,7 +120,7 @@ def _draw_autocorrelation(panel: Axes, one: Diagnosis) -> None:
     panel.set_xlim(0.0, float(lags[-1]) + one.step)
     panel.set_ylabel("autocorrelation")
     plain_numbers(panel.xaxis, panel.yaxis)
-    word = "white" if one.is_white else f"correlated over {one.memory:.2g} s"
+    word = "white" if one.is_white else f"correlated over {two_digits(one.memory)} s"
     if one.is_white and one.whiteness < DIAGNOSIS.doubt:
         word = "correlated, too little to matter"
     panel.set_title(word, loc="left", fontsize=8.5, color=color, pad=5)
@@ -137,7 +138,7 @@ def _draw_histogram(panel: Axes, one: Diagnosis) -> None:
     panel.set_yticks([])
     panel.set_xticks([-3, 0, 3])
     panel.spines["left"].set_visible(False)
-    word = f", {100 * one.outliers:.2g} % outliers" if one.outliers > 0 else ""
+    word = f", {two_digits(100 * one.outliers)} % outliers" if one.outliers > 0 else ""
     panel.set_title(f"histogram{word}", loc="left", fontsize=8.5, color="#555555", pad=5)
 
 

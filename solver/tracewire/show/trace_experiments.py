@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from tracewire.formula import two_digits
 from tracewire.show.limits import WORD
 from tracewire.trace import Experiment, Found, users_unit
 
@@ -37,8 +38,8 @@ def experiment_words(found: Found, experiment: Experiment) -> str:
     if len(others) > 1:
         low, high = min(others), max(*others, experiment.separation)
         enough = WORD.least_separation
-        least = f"{low:.2g}" if low >= enough else f"less than {enough:g}"
-        told += f" (by {least} to {high:.2g} at the settings that were searched)"
+        least = f"{two_digits(low)}" if low >= enough else f"less than {enough:g}"
+        told += f" (by {least} to {two_digits(high)} at the settings that were searched)"
     return f"{told}."
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from tracewire.formula import two_digits
 from tracewire.show.limits import WORD
 from tracewire.show.trace_experiments import experiment_words
 from tracewire.show.trace_steps import decided_words
@@ -72,7 +73,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
     lines += [f"  {experiment_words(found, experiment)}" for experiment in found.experiments]
     if found.verdict == "null" and found.power:
         least = ", ".join(
-            f"{p.name} @ {p.place} {coefficient_of(p)} = {p.smallest / factor:.2g} {unit}".rstrip()
+            f"{p.name} @ {p.place} {coefficient_of(p)} = "
+            f"{two_digits(p.smallest / factor)} {unit}".rstrip()
             for p in common_powers(found)[: WORD.most_channels]
             for unit, factor in [users_unit_of_power(found, p)]
         )

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
+from tracewire.formula import two_digits
 from tracewire.library import SENSOR_TERMS
 from tracewire.show.limits import WORD
 from tracewire.trace import (
@@ -218,7 +219,7 @@ def doubt_words(found: Found) -> str:
     and one that comes back to what the diagram declares has not grown.
     """
     grown = [
-        f"'{m.name}' is {m.after / m.before:.2g} times as large"
+        f"'{m.name}' is {two_digits(m.after / m.before)} times as large"
         for m in found.moved
         if stood_in(m)
         and m.before
@@ -241,7 +242,7 @@ def moved_words(moved: ParameterChange) -> str:
     text = f"'{moved.name}' moves from {before:.4g} to {after:.4g}{unit}"
     if moved.error > 0:
         errors = abs(moved.after - moved.before) / moved.error
-        text += f" ({errors:.2g} standard errors)" if errors < 100 else ""
+        text += f" ({two_digits(errors)} standard errors)" if errors < 100 else ""
     return text
 
 

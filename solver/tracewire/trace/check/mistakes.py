@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
-from tracewire.formula import Name, same_quantity
+from tracewire.formula import Name, same_quantity, two_digits
 from tracewire.residual import Measured, Section, channel_noise, cut_windows, with_past
 from tracewire.solve import values_at, with_points
 from tracewire.trace.data_thresholds import CheckOptions
@@ -183,7 +183,7 @@ def _shifts(
                 lag, least = lag + side, there
                 if abs(lag - likely) > options.lag_steps * step:
                     break
-        when = f"about {abs(lag):.2g} s {'after' if lag > 0 else 'before'} its drive"
+        when = f"about {two_digits(abs(lag))} s {'after' if lag > 0 else 'before'} its drive"
         yield Mistake(
             f"if its signals come {when}",
             "Are drive and signals from one clock? Put them to the same time.",

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracewire.errors import FitError, SimulationError
+from tracewire.formula import two_digits
 from tracewire.residual import (
     InputCovariance,
     Measured,
@@ -59,7 +60,7 @@ def describe_input_noise(noise: InputNoise, units: Mapping[str, str]) -> str:
         for name, level in by_input.items():
             largest[name] = max(level, largest.get(name, 0.0))
     parts = [
-        f"{level:.2g} {units.get(name, '')}".rstrip() + f" in '{name}'"
+        f"{two_digits(level)} {units.get(name, '')}".rstrip() + f" in '{name}'"
         for name, level in largest.items()
     ]
     return (

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.formula import two_digits
 from tracewire.residual import project_out_initial_states
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.own_rhythm import describe_own_rhythm
@@ -79,8 +80,9 @@ def tell_waves_tried_once(search: Search, judgement: Judgement) -> None:
     named = judgement.verdict == "effect" and kinds
     if named and best.reduced_chi2 > search.options.informative:
         search.words.append(
-            f"{join_names(kinds)} is tried once, and {best.reduced_chi2**0.5:.2g} σ are left, where"
-            " 1 is the noise: for another wave of this kind apply the change and trace again"
+            f"{join_names(kinds)} is tried once, and {two_digits(best.reduced_chi2**0.5)} σ are"
+            " left, where 1 is the noise: for another wave of this kind apply the change and trace"
+            " again"
         )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.formula import two_digits
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Trial
 
@@ -25,16 +26,16 @@ def describe_settling(trial: Trial, options: TraceOptions) -> Iterator[str]:
         if begin:
             off = float(np.mean(squares[:begin])) ** 0.5
             yield (
-                f"'{name}' is at the noise from {t[begin]:.4g} s on, and {off:.2g} σ off before. "
-                f"If something settles there, leave it out by `from:`{IN_THE_FILE}"
+                f"'{name}' is at the noise from {t[begin]:.4g} s on, and {two_digits(off)} σ off"
+                f" before. If something settles there, leave it out by `from:`{IN_THE_FILE}"
             )
             continue
         end = len(t) - quiet_from(squares[::-1], options)
         if end < len(t):
             off = float(np.mean(squares[end:])) ** 0.5
             yield (
-                f"'{name}' is at the noise until {t[end - 1]:.4g} s, and {off:.2g} σ off after "
-                f"that. If something disturbs it there, leave it out by `to:`{IN_THE_FILE}"
+                f"'{name}' is at the noise until {t[end - 1]:.4g} s, and {two_digits(off)} σ off"
+                f" after that. If something disturbs it there, leave it out by `to:`{IN_THE_FILE}"
             )
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.formula import two_digits
 from tracewire.residual import Section, restart_from_others
 from tracewire.trace.choose.choice import beats_declared, log_scores
 from tracewire.trace.choose.prediction import Prediction
@@ -174,8 +175,8 @@ def describe_better_unseen(prediction: Prediction, number: int, left: float) -> 
     if prediction.total(number) <= prediction.total(chosen):
         held_out = f"has more fitted numbers than {known}, and"
     return (
-        f"{other} {held_out} leaves {left:.2g} times its error in whole unseen runs: these data do"
-        " not decide between them"
+        f"{other} {held_out} leaves {two_digits(left)} times its error in whole unseen runs:"
+        " these data do not decide between them"
     )
 
 
@@ -188,7 +189,7 @@ def simplify_by_unseen(search: Search, prediction: Prediction) -> Prediction:
             search.words.append(
                 f"{join_names(prediction.chosen.names)} predicts held-out blocks better than"
                 f" {join_names(prediction.models[number].names)}, which is simpler and leaves"
-                f" {left:.2g} times its error in whole unseen runs"
+                f" {two_digits(left)} times its error in whole unseen runs"
             )
             return prediction.exchanging(number)
     return prediction

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.formula import two_digits
 from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.choose.noisy_inputs import noisy_inputs
@@ -141,9 +142,9 @@ def _describe_longer_windows(best: Trial, longer: Trial) -> str:
     names = join_names(map(str, best.effects))
     short, long = best.reduced_chi2**0.5, longer.reduced_chi2**0.5
     return (
-        f"something smaller may be missing, too: with {names} the residual is {short:.2g} σ in"
-        f" windows of {best.length} samples, and {long:.2g} σ in windows of {longer.length}. Apply"
-        " the change and trace again"
+        f"something smaller may be missing, too: with {names} the residual is {two_digits(short)} σ"
+        f" in windows of {best.length} samples, and {two_digits(long)} σ in windows of"
+        f" {longer.length}. Apply the change and trace again"
     )
 
 
@@ -197,7 +198,7 @@ def judge_prediction(search: Search, prediction: Prediction) -> Judgement:
             search.words.extend(describe_few_samples(declared[-1], options))
         if above and not missed:
             search.words.append(
-                f"the residual is {declared[-1].reduced_chi2 ** 0.5:.2g} σ, and no effect"
+                f"the residual is {two_digits(declared[-1].reduced_chi2 ** 0.5)} σ, and no effect"
                 " or smooth function explains it: the noise is larger than σ, or the record is"
                 " disturbed otherwise"
             )
@@ -284,7 +285,7 @@ def _least_share(prediction: Prediction, options: TraceOptions) -> tuple[float, 
     small = left < options.small_error and not chosen.dropped
     if small and least < options.explained_small:
         least = options.explained_small
-        what = f"an effect behind an error of {100 * left:.2g} % of the motion needs"
+        what = f"an effect behind an error of {two_digits(100 * left)} % of the motion needs"
     return least, f", and {what} {100 * least:.0f} %" if what else ""
 
 
@@ -395,8 +396,8 @@ def _describe_refinement(prediction: Prediction) -> list[str]:
     more = join_names(prediction.models[best].names - chosen.names)
     return [
         f"{more} would be a refinement: it lowers the error on held-out blocks by {less:.0%}, but"
-        f" takes only {100 * part:.2g} % of the squared error that was missing, so it may stand for"
-        " anything, and is not named"
+        f" takes only {two_digits(100 * part)} % of the squared error that was missing, so it"
+        " may stand for anything, and is not named"
     ]
 
 
@@ -466,4 +467,4 @@ def _as_good_words(names: Collection[str], cost: float, more: int) -> str:
 
 def _change(cost: float) -> str:
     percent = 100 * float(np.expm1(cost))
-    return f"{abs(percent):.2g} % {'more' if cost > 0 else 'less'}"
+    return f"{two_digits(abs(percent))} % {'more' if cost > 0 else 'less'}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tracewire.formula import two_digits
 from tracewire.trace.experiment.rig import Design, Rig
 
 Units = Callable[[str], tuple[str, float]]
@@ -31,13 +32,13 @@ def decision(
     if separation >= rig.options.decides:
         return (
             f"To decide between {one} and {other}: {how}. The predictions then differ by "
-            f"{separation:.2g} times the sensor noise."
+            f"{two_digits(separation)} times the sensor noise."
         )
     hint = alias_hint(one, other) if separation < rig.options.alike else ""
     none = none_within(one, other)
     return (
         f"{none[:1].upper()}{none[1:]}: the best one ({how}) makes them differ by "
-        f"{separation:.2g} times the sensor noise.{f' {hint}.' if hint else ''}"
+        f"{two_digits(separation)} times the sensor noise.{f' {hint}.' if hint else ''}"
     )
 
 

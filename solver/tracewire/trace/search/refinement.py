@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from tracewire.errors import FitError
+from tracewire.formula import two_digits
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
@@ -293,13 +294,13 @@ def _drop_trifles(
             most = options.search.trifle * excess
             small = unsure and taken < most
             if small and not (taken > best.rss and _is_complete(search, best)):
-                part = f"{100 * taken / excess:.2g} % of the squared error that was missing"
+                part = f"{two_digits(100 * taken / excess)} % of the squared error that was missing"
                 as_well = f", as {' and '.join(ties)} would" if ties else ""
                 words = f"it takes only {part}{as_well}, so it may stand for anything"
                 break
             most = options.search.slight * best.rss
             if _is_part_of_remainder(search, best, taken):
-                part = f"{100 * taken / best.rss:.2g} % of the squared error of the noise"
+                part = f"{two_digits(100 * taken / best.rss)} % of the squared error of the noise"
                 words = f"it takes {part}, and more is left that no effect takes"
                 break
         else:
