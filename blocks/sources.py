@@ -21,11 +21,12 @@ bias = Block(
 
 harmonic = Block(
     name="harmonic",
-    doc="A torque or force of one frequency that nothing else explains, as of a motor nearby.",
+    doc="A torque or force of one frequency that nothing else explains, as of a motor nearby, with "
+    "its phase at t = 0.",
     parameters=(
         Parameter("amplitude", doc="the torque or force"),
         Parameter("period", "s", "of a wave, 1/frequency", low=0.0),
-        Parameter("phase", "rad", default=0.0),
+        Parameter("phase", "rad", "at t = 0; one for all series that give none", default=0.0),
     ),
     outputs=(Output("force", "amplitude*sin(2*pi*t/period + phase)", doc="acts on the body"),),
     # Whole numbers of waves in the record, so that no frequency up to 60/T is missed, and above it

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from tracewire.compile import compile
 from tracewire.diagram import read_text
+from tracewire.residual import load_measured
 from tracewire.solve import Run, simulate
 
 Vector = NDArray[np.float64]
@@ -378,3 +380,35 @@ def test_play_and_stop_of_a_coordinate_alone_are_those_of_its_way() -> None:
     stopped = -3 * (found.signals["of"] - ends) / gap
     np.testing.assert_allclose(found.signals["stop"], stopped, atol=2e-2)
     assert np.max(np.abs(found.signals["stop"])) == pytest.approx(3.0, abs=1e-2)
+
+
+LATER = """
+span: [0, 1]
+record: [hum]
+blocks:
+  hum: {{type: harmonic, amplitude: 1, period: 2, phase: {{value: 0.3}}}}
+measured:
+  later:
+    {{file: later.csv, time: {{column: t, zero: {zero}}}, signals: {{hum: {{column: y}}}}{more}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("zero", "more", "same"),
+    [
+        (0, "", True),  # the time of one clock
+        (1.5, "", False),  # a run that begins at 0 while the source goes on ...
+        (1.5, ", parameters: {hum.phase: 0.3 + 1.5*pi}", True),  # ... has a phase of its own
+    ],
+)
+def test_the_phase_of_a_harmonic_is_that_at_the_zero_of_a_series(
+    tmp_path: Path, zero: float, more: str, same: bool
+) -> None:
+    clock = np.linspace(1.5, 3.5, 41)
+    rows = "".join(f"{t},{np.sin(np.pi * t + 0.3)}\n" for t in clock)
+    (tmp_path / "later.csv").write_text(f"t,y\n{rows}", encoding="utf-8")
+    text = LATER.format(zero=zero, more=more)
+    model = compile(read_text(text, tmp_path / "later.yaml"))
+    (series,) = load_measured(model)
+    found = simulate(model, **{**series.conditions, "times": series.t})["hum"]
+    assert (found == pytest.approx(np.sin(np.pi * clock + 0.3), abs=1e-9)) == same
