@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import sys
 import textwrap
 import types
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -22,14 +23,10 @@ from typing import (
     get_type_hints,
 )
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from tracewire.errors import OptionError, Problem
 
 P = ParamSpec("P")
 T = TypeVar("T")
-ARRAY = frozenset(get_args(ArrayLike))
 LISTS = (Sequence, Collection, Iterable)
 WORDS: dict[Any, str] = {float: "a number", int: "a whole number", str: "a text", Path: "a path"}
 MADE_BY = {
@@ -42,6 +39,10 @@ MADE_BY = {
     "Result": ("a result", "Give what a run, a fit, a trace or an analysis has returned."),
 }
 """Of classes that are made by a function: what it is, and how to get it."""
+
+
+class _Array:
+    """Stands for all kinds of which numpy makes an array."""
 
 
 def checked(function: Callable[P, T]) -> Callable[P, T]:
@@ -107,14 +108,19 @@ def _branches(kind: Any) -> list[Any]:
     if get_origin(kind) not in (Union, types.UnionType):
         return [kind]
     kinds = list(get_args(kind))
-    if not set(kinds) >= ARRAY:
+    if "numpy" not in sys.modules:  # a command that needs none must not wait for it
         return kinds
-    return [ArrayLike, *(one for one in kinds if one not in ARRAY)]
+    from numpy.typing import ArrayLike
+
+    array = get_args(ArrayLike)
+    if not set(kinds) >= set(array):
+        return kinds
+    return [_Array, *(one for one in kinds if one not in array)]
 
 
 def _fits(value: Any, kind: Any) -> bool:
     """Whether a value is of a kind; of a kind that is not told here, it is."""
-    if kind is ArrayLike:
+    if kind is _Array:
         return _is_array(value)
     if get_origin(kind) in (Union, types.UnionType):
         return any(_fits(value, one) for one in _branches(kind))
@@ -160,7 +166,7 @@ def _is_list(value: Any) -> bool:
 
 def _is_number(value: Any) -> bool:
     """Whether it is one real number, also of numpy."""
-    if isinstance(value, str | bytes | complex) or np.ndim(value):
+    if isinstance(value, str | bytes | complex) or getattr(value, "ndim", False):
         return False
     try:
         float(value)
@@ -173,6 +179,8 @@ def _is_array(value: Any) -> bool:
     """Whether an array of numbers can be made of it."""
     if value is None or isinstance(value, str | bytes | Mapping):
         return False
+    import numpy as np
+
     try:
         np.asarray(value, dtype=float)
     except (TypeError, ValueError):
@@ -182,7 +190,8 @@ def _is_array(value: Any) -> bool:
 
 def _shown(value: Any) -> str:
     """A value as a message shows it."""
-    if isinstance(value, str | bytes | int | float | complex | Sequence | Mapping | np.ndarray):
+    plain = isinstance(value, str | bytes | int | float | complex | Sequence | Mapping)
+    if plain or hasattr(value, "ndim"):
         return textwrap.shorten(repr(value), 60, placeholder=" ...")
     return "None" if value is None else f"a {type(value).__name__}"
 
@@ -190,7 +199,7 @@ def _shown(value: Any) -> str:
 def _words(kind: Any) -> str:
     """What a kind is, in words."""
     origin, inside = get_origin(kind), get_args(kind)
-    if kind is ArrayLike:
+    if kind is _Array:
         return "an array of numbers"
     if origin in (Union, types.UnionType):
         kinds = [one for one in _branches(kind) if one is not types.NoneType]

@@ -84,7 +84,7 @@ def test_a_memory_that_is_led_in_a_circle_is_named() -> None:
     text = """
 span: [0, 7]
 blocks:
-  x: {type: integrator, of: 1, start: 0.5}
+  x: {type: ramp, slope: 1, offset: 0.5}
   hurry: {type: hurry, of: x}
 """
     library = load_library().extended({"hurry": HURRY}, {})
