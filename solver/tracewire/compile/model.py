@@ -75,6 +75,15 @@ class Model:
     def _parameter_formulas(self) -> dict[str, dict[str, Expression]]:
         return {}
 
+    def users_unit(self, signal: str) -> tuple[str, float]:
+        """The unit in which a user has a signal or an input, and its factor to SI: that of the
+        measured files, else that in which figures show it, else the one in SI."""
+        flat = self.flat
+        unit, factor = self.diagram.users_unit(signal, "")
+        if not unit and signal in flat.shown and flat.shown[signal].unit:
+            return flat.shown[signal].unit, flat.shown[signal].factor
+        return unit or flat.units.get(signal, ""), factor
+
     @cached_property
     def is_linear(self) -> bool:
         """Whether the rates are linear in the states at each time, with no event that reads a

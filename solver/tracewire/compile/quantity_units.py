@@ -34,7 +34,7 @@ def unit_of_quantity(model: Model, quantity: Expression) -> tuple[str, float]:
         return "Hz", 1.0
     known = {*model.flat.signals, *model.flat.inputs, *model.states}
     signals = [name for name in _kept(formula) or () if name in known]
-    of_users = {_users_unit(model, name) for name in signals}
+    of_users = {model.users_unit(name) for name in signals}
     of_si = {(model.flat.units.get(name, ""), 1.0) for name in signals}
     for units in (of_users, of_si):
         if len(units) == 1 and (unit := next(iter(units)))[0]:
@@ -51,13 +51,6 @@ def _derived(model: Model, formula: Expression) -> str:
         return ""
     term, _ = unit_of(model.flat, formula)
     return dimension_text(term) if term else ""
-
-
-def _users_unit(model: Model, name: str) -> tuple[str, float]:
-    unit, factor = model.diagram.users_unit(name, "")
-    if unit or name not in model.flat.shown or not model.flat.shown[name].unit:
-        return unit or model.flat.units.get(name, ""), factor
-    return model.flat.shown[name].unit, model.flat.shown[name].factor
 
 
 def _kept(node: Expression) -> list[str] | None:

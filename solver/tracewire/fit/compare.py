@@ -87,7 +87,7 @@ def compare_series(
             counts=m.t >= m.counts_from,
             period=m.periods.get(signal, 0.0),
             sigma=m.sigma.get(signal),
-            users_unit=model.diagram.users_unit(signal, units.get(signal, "")),
+            users_unit=model.users_unit(signal),
         )
         for m in series
         for n, (signal, values) in enumerate(m.values.items())

@@ -238,10 +238,10 @@ def _beside(file: str, fit: Fit) -> str:
 
 
 def _signals_table(fit: Fit) -> Table:
-    units, rows = fit.model.flat.units, []
+    rows = []
     for m in fit.measured:
         for signal in m.values:
-            unit, factor = fit.model.diagram.users_unit(signal, units.get(signal, ""))
+            unit, factor = fit.model.users_unit(signal)
             sigma = m.sigma.get(signal)
             noise = "not declared" if sigma is None else shown(sigma / factor)
             weight = shown(m.weights.get(signal, 1.0))

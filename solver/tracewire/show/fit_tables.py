@@ -67,7 +67,7 @@ def unit_of(fit: Fit, name: str) -> tuple[str, float]:
     if kind not in SENSOR_TERMS:
         return "", 1.0
     term = SENSOR_TERMS[kind]
-    unit, factor = fit.model.diagram.users_unit(signal, flat.units.get(signal, ""))
+    unit, factor = fit.model.users_unit(signal)
     return term.unit_of(unit), term.factor(factor)
 
 
@@ -116,12 +116,11 @@ def tied_table(fit: Fit) -> Table:
 
 def starts_table(fit: Fit) -> Table:
     """Fitted start values by series and state, of a measured one in the unit of its column."""
-    units = {state.name: state.unit for state in fit.model.flat.states}
     rows = tuple(
         (series, state, shown(value / factor), unit)
         for series, starts in fit.starts.items()
         for state, value in starts.items()
-        for unit, factor in [fit.model.diagram.users_unit(state, units.get(state, ""))]
+        for unit, factor in [fit.model.users_unit(state)]
     )
     return Table("fitted start values", ("series", "state", "start", "unit"), rows, frozenset({2}))
 
@@ -205,6 +204,13 @@ def _with_use(series: str, use: str) -> str:
 def residual_words(fit: Fit, found: Sequence[Diagnosis]) -> tuple[str, ...]:
     """What the residual after the fit is like, by series and signal."""
     words = [sentence(f"{_with_use(d.series, d.use)}, {d.signal}: {d.words}") for d in found]
+    if any(d.is_missing for d in found) and any(
+        error > 0 for error in fit.uncertainty.errors.values()
+    ):
+        words.append(
+            "The standard errors take what is missing for noise: a value may be much nearer to the"
+            " truth than they say, or farther from it."
+        )
     # a body that sticks or hits a stop once more: no slope shows the way to such a motion
     jumps = any(not mode.timed for mode in fit.model.modes)
     if (

@@ -147,7 +147,7 @@ def series_contents(series: Measured, model: Model) -> dict[str, object]:
     told = [
         f"{name}: noise of σ = {s / factor:.4g} {unit}".rstrip() + how.get(name, "")
         for name, s in {**sigma, **estimated}.items()
-        for unit, factor in [model.diagram.users_unit(name, model.flat.units.get(name, ""))]
+        for unit, factor in [model.users_unit(name)]
     ]
     short = []
     if not enough:

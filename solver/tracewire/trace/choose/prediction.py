@@ -121,6 +121,16 @@ class Prediction:
         found = [n for n, one in enumerate(self.entrants) if one.effects and one.effects < mine]
         return sorted(found, key=lambda n: -self.entrants[n].numbers)
 
+    def shares(self) -> dict[str, float]:
+        """The part of the declared model's squared error that each of several effects takes away
+        beside the others, as far as the model without it was compared."""
+        mine, found = self.entrants[self.choice.chosen], dict[str, float]()
+        for one in (self.entrants[number] for number in self.smaller()):
+            if len(one.effects) == len(mine.effects) - 1:
+                (name,) = mine.effects - one.effects
+                found[name] = min(found.get(name, np.inf), one.leaves_more(mine))
+        return found
+
     def without_effects(self) -> Prediction:
         """The same with the declared model chosen."""
         return replace(self, choice=replace(self.choice, chosen=0, ties=()))

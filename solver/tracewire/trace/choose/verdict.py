@@ -373,7 +373,8 @@ def final_of(search: Search, prediction: Prediction) -> FinalModels:
     search.words += _describe_refinement(prediction)
     own = search.problem.declared.flat.parameters
     dropped = (*chosen.dropped, *(name for name in chosen.vanished if name in own))
-    return FinalModels(declared, best, {k: tuple(v) for k, v in rivals.items()}, dropped)
+    shares = prediction.shares()
+    return FinalModels(declared, best, {k: tuple(v) for k, v in rivals.items()}, dropped, shares)
 
 
 def _describe_refinement(prediction: Prediction) -> list[str]:

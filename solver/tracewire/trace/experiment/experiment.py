@@ -89,10 +89,7 @@ def design_experiment(
         if math.isfinite(value)
     )
 
-    def units(signal: str) -> tuple[str, float]:
-        return problem.declared.diagram.users_unit(signal, one.model.flat.units.get(signal, ""))
-
-    words = decision(rig, best, separations[best], name, rival, units)
+    words = decision(rig, best, separations[best], name, rival, one.model.users_unit)
     return Experiment(name, rival, rig.as_parameters(best), separations[best], words, rows)
 
 

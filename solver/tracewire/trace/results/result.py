@@ -14,6 +14,7 @@ from tracewire.compile import Model
 from tracewire.diagram import Diagram, SetValues, patch
 from tracewire.errors import TracewireError
 from tracewire.fit import describe_undetermined
+from tracewire.formula import two_digits
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual import is_of_sensor
 from tracewire.trace.candidates.changes import changes_of
@@ -31,6 +32,7 @@ from tracewire.trace.found import (
     Tie,
 )
 from tracewire.trace.missing.restoring_force import restoring_forces
+from tracewire.trace.options import TraceOptions
 from tracewire.trace.results.comparison import (
     compare_models,
     on_equal_windows,
@@ -133,7 +135,8 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
                 gain=gain,
                 masked=masked,
                 weight=weight,
-                doubt=_doubt_of(search, effect, final.best),
+                share=(share := final.shares.get(str(effect), float("nan"))),
+                doubt=_doubt_of(search, effect, final.best) or _small_share(share, search.options),
             )
         )
     return tuple(found)
@@ -151,6 +154,16 @@ def _doubt_of(search: Search, effect: PlacedEffect, best: Trial) -> str:
     value = _fitted_parameters(effect, best)[candidate.parameter]
     measured, options = search.problem.measured, search.options.check
     return describe_held_input(candidate.place.name, value, measured, options)
+
+
+def _small_share(share: float, options: TraceOptions) -> str:
+    """In words, that an effect takes little beside the others."""
+    if not share < options.small_share:
+        return ""
+    return (
+        f"it takes {two_digits(100 * max(share, 0.0))} % of the squared error that was missing:"
+        " so small a part may stand for another law"
+    )
 
 
 def _intervals_of(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:

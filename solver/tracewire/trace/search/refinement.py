@@ -38,12 +38,14 @@ class Rival:
 @dataclass(frozen=True, eq=False)
 class FinalModels:
     """The declared model and the best one on the longest windows that they bear, the rivals of each
-    effect by its name, and the declared parameters that went to zero."""
+    effect by its name, the declared parameters that went to zero, and what each of several effects
+    takes away beside the others, as a part of the declared model's squared error."""
 
     declared: Trial
     best: Trial
     rivals: dict[str, tuple[Rival, ...]] = field(default_factory=dict)
     dropped: tuple[str, ...] = ()
+    shares: Mapping[str, float] = field(default_factory=dict)
 
 
 def refine(search: Search, declared: Trial, best: Trial) -> FinalModels:
