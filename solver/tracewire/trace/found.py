@@ -60,7 +60,7 @@ class FoundEffect:
     sensor's). `params` are its parameters in SI, `coefficient` the one that it is linear in,
     `intervals` 95 % intervals. `gain` is half the fall of BIC that it brought, `masked` the part of
     it that the declared parameters had imitated, `weight` its share among what was tried beside it.
-    `share` is the part of the squared error that was missing which it takes beside the others, NaN
+    `share` is the part of the squared error that was missing which it takes beside the others, None
     of one alone. `doubt` says what else would look like it, and what to do about that; '' where
     nothing is known.
     """
@@ -75,7 +75,7 @@ class FoundEffect:
     gain: float = float("nan")
     masked: float = float("nan")
     weight: float = float("nan")
-    share: float = float("nan")
+    share: float | None = None
     doubt: str = ""
 
     def __str__(self) -> str:

@@ -50,10 +50,10 @@ def test_one_effect_has_no_share(names: tuple[str, ...]) -> None:
         (0.038, "it takes 3.8 % of the squared error that was missing: so small a part may stand "),
         (-0.01, "it takes 0 % of the squared error that was missing: so small a part may stand "),
         (0.2, ""),
-        (float("nan"), ""),
+        (None, ""),
     ],
 )
-def test_a_small_share_is_told(share: float, words: str) -> None:
+def test_a_small_share_is_told(share: float | None, words: str) -> None:
     found = _small_share(share, TraceOptions())
     assert found.startswith(words)
     assert bool(found) == bool(words)

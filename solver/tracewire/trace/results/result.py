@@ -135,7 +135,7 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
                 gain=gain,
                 masked=masked,
                 weight=weight,
-                share=(share := final.shares.get(str(effect), float("nan"))),
+                share=(share := final.shares.get(str(effect))),
                 doubt=_doubt_of(search, effect, final.best) or _small_share(share, search.options),
             )
         )
@@ -156,9 +156,9 @@ def _doubt_of(search: Search, effect: PlacedEffect, best: Trial) -> str:
     return describe_held_input(candidate.place.name, value, measured, options)
 
 
-def _small_share(share: float, options: TraceOptions) -> str:
+def _small_share(share: float | None, options: TraceOptions) -> str:
     """In words, that an effect takes little beside the others."""
-    if not share < options.small_share:
+    if share is None or share >= options.small_share:
         return ""
     return (
         f"it takes {two_digits(100 * max(share, 0.0))} % of the squared error that was missing:"
