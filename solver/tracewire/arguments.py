@@ -9,7 +9,7 @@ import textwrap
 import types
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import is_dataclass
-from functools import lru_cache, wraps
+from functools import cache, lru_cache, wraps
 from pathlib import Path
 from typing import (
     Any,
@@ -50,7 +50,9 @@ def checked(function: Callable[P, T]) -> Callable[P, T]:
 
     Raises OptionError before the function runs: which argument, what it is, and what to give.
     """
-    signature, name = inspect.signature(function), function.__name__
+    parameters, name = inspect.signature(function).parameters, function.__name__
+    defaults = {p.name: p.default for p in parameters.values()}
+    order = [p.name for p in parameters.values() if p.kind is p.POSITIONAL_OR_KEYWORD]
 
     @lru_cache(maxsize=1)
     def kinds() -> dict[str, Any]:
@@ -62,18 +64,12 @@ def checked(function: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(function)
     def call(*args: P.args, **kwargs: P.kwargs) -> T:
-        try:
-            given = signature.bind(*args, **kwargs).arguments
-        except TypeError:  # Python says what is missing, or too much
-            return function(*args, **kwargs)
-        beside = [p.name for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]
-        for argument in beside:
-            given |= given.pop(argument, {})
-        known = kinds()
+        known = kinds()  # of what is missing, or too much, Python says so
+        given = [*zip(order, args, strict=False), *kwargs.items()]
         problems = [
             Problem(f"{name}: {wrong}", hint=_remedy(argument, known[argument]))
-            for argument, value in given.items()
-            if argument in known
+            for argument, value in given
+            if argument in known and value is not defaults.get(argument, call)
             for wrong in misfits(argument, value, known[argument])
         ]
         if problems:
@@ -107,9 +103,14 @@ def _branches(kind: Any) -> list[Any]:
     """The kinds of which a value may be one; all that makes an array is one of them."""
     if get_origin(kind) not in (Union, types.UnionType):
         return [kind]
+    # a command that needs no numpy must not wait for it
+    return _with_array(kind) if "numpy" in sys.modules else list(get_args(kind))
+
+
+@cache
+def _with_array(kind: Any) -> list[Any]:
+    """The same of a union, where numpy is there."""
     kinds = list(get_args(kind))
-    if "numpy" not in sys.modules:  # a command that needs none must not wait for it
-        return kinds
     from numpy.typing import ArrayLike
 
     array = get_args(ArrayLike)
@@ -166,6 +167,8 @@ def _is_list(value: Any) -> bool:
 
 def _is_number(value: Any) -> bool:
     """Whether it is one real number, also of numpy."""
+    if type(value) in (float, int):
+        return True
     if isinstance(value, str | bytes | complex) or getattr(value, "ndim", False):
         return False
     try:

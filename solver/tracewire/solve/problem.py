@@ -81,7 +81,7 @@ class InitialValueProblem:
         same_tables = not tables_follow(model, given.get("inputs") or {})
         tables = self.tables if same_tables else None
         if not same_span or timing_follows(model):
-            return _problem(model, given, self.sensitivities, self.sampled, tables)
+            return pose(model, given, self.sensitivities, self.sampled, tables)
         values = parameter_values(model, given.get("parameters") or {}, given.get("preset", ""))
         numbers = _numbers(model, given, values, self.sensitivities, self.past, tables)
         return replace(self, given=given, parameters=values, **numbers)
@@ -133,17 +133,18 @@ def initial_value_problem(
     the diagram requires.
     """
     refuse_unknown_options(given)
-    return _problem(model, given, sensitivities, sampled)
+    return pose(model, given, sensitivities, sampled)
 
 
-def _problem(
+def pose(
     model: Model,
     given: Options,
     sensitivities: Sequence[str],
-    sampled: bool,
+    sampled: bool = True,
     tables: Vector | None = None,
 ) -> InitialValueProblem:
-    """The problem; `tables` are the packed ones, where they are known."""
+    """As `initial_value_problem`, of options whose names and kinds are known to be right; `tables`
+    are the packed ones, where they are known."""
     values = parameter_values(model, given.get("parameters") or {}, given.get("preset", ""))
     asked = check_sensitivities(model, sensitivities)
     times = given.get("times")

@@ -11,7 +11,8 @@ from tracewire.compile import Model
 from tracewire.solve.integrator import Integrator, refuse_nan
 from tracewire.solve.interrupt import Interrupted
 from tracewire.solve.limits import Limits
-from tracewire.solve.problem import initial_value_problem
+from tracewire.solve.options import Options
+from tracewire.solve.problem import pose
 from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import Run
 
@@ -59,9 +60,7 @@ def simulate(
     finished: it names block, signal and time; of that kind Interrupted, where Ctrl-C stopped it:
     it carries the run up to there.
     """
-    problem = initial_value_problem(
-        model,
-        sensitivities,
+    given = Options(
         parameters=parameters,
         start=start,
         span=span,
@@ -76,6 +75,7 @@ def simulate(
         past=past,
         limits=limits,
     )
+    problem = pose(model, given, sensitivities)
     integrator = Integrator(problem, progress=progress)
     try:
         integrator.go_to()
