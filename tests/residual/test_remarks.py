@@ -145,8 +145,12 @@ def test_an_angle_that_comes_round_is_remarked_where_nothing_says_so(file: Path)
 
 def test_a_turn_in_radians_of_a_column_in_degrees_is_remarked(file: Path) -> None:
     turning(file)
-    (remark,) = one(file, FREE, "{column: angle, unit: deg, modulo: 6.28}").remarks
-    assert remark == "theta has modulo: 6.28 in deg: a turn is modulo: 360"
+    wrong = ("theta has modulo: 6.28 in deg: a turn is modulo: 360",)
+    assert one(file, FREE, "{column: angle, unit: deg, modulo: 6.28}").remarks == wrong
+    text = (file.parent / "run.csv").read_text(encoding="utf-8")
+    written(file, text.replace("angle", "angle [deg]"))
+    assert one(file, FREE, "{column: angle, modulo: 6.28}").remarks == wrong
+    assert one(file, FREE, "{column: angle, modulo: 360}").remarks == ()
 
 
 @pytest.mark.parametrize(

@@ -9,25 +9,8 @@ from tracewire.errors import FormulaError
 from tracewire.formula import same_quantity
 
 BASES = (
-    *(
-        "rad",
-        "mrad",
-        "deg",
-        "m",
-        "cm",
-        "mm",
-        "um",
-        "nm",
-        "km",
-        "N",
-        "mN",
-        "kN",
-        "Nm",
-        "mNm",
-        "V",
-        "mV",
-    ),
-    *("A", "mA", "s", "ms", "us", "Hz", "kg", "g", "Pa", "kPa", "bar", "W", "K"),
+    *("rad", "mrad", "deg", "m", "cm", "mm", "um", "km", "N", "mN", "kN", "Nm", "mNm", "V", "mV"),
+    *("A", "mA", "s", "ms", "us", "Hz", "kg", "g", "Pa", "kPa", "bar", "W", "K", "nm"),
 )
 SUFFIX = re.compile(rf"({'|'.join(BASES)})(?:(_per_s|_s|ps)(?:\^|_)?(2?))?")
 OTHERS = {"dps": "deg/s", "rpm": "rpm", "kmh": "km/h", "kph": "km/h"}

@@ -121,11 +121,12 @@ def _on_angles(
         if name not in read.columns or angle != "rad":
             continue
         column, (shown, factor) = read.columns[name], _unit_of_column(series, read, name)
-        period = series.channels[name].modulo
-        if period is None:
+        channel = series.channels[name]
+        period = (channel.modulo or 0.0) * factor_of_column(read, name, channel) / factor
+        if channel.modulo is None:
             found += _on_wraps(name, read.t, column, shown or "rad", factor)
-        elif shown == "deg" and abs(period / factor - 2 * math.pi) < REMARK.near_turn / 10:
-            found.append(f"{name} has modulo: {period / factor:.4g} in deg: a turn is modulo: 360")
+        elif shown == "deg" and abs(period - 2 * math.pi) < REMARK.near_turn / 10:
+            found.append(f"{name} has modulo: {period:.4g} in deg: a turn is modulo: 360")
         low, high = usual_range(column)
         scaled = series.channels[name].gain is not None  # a column of counts, or of volts
         said = bool(given.text) or scaled
