@@ -23,7 +23,7 @@ from tracewire.residual import (
     with_measured_signals,
     with_past,
 )
-from tracewire.trace.candidates.places import describe_untried, find_places
+from tracewire.trace.candidates.places import describe_no_sum, describe_untried, find_places
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.outliers import drop_outliers
 from tracewire.trace.check.refusals import check_series, remarks, without_still
@@ -172,6 +172,7 @@ def set_up_search(
     problem = TraceProblem(model, series, sigma, rtol, inputs, options)
     places = find_places(model)
     words = [*left_out, *remarks(series, options.check), *data_split.words]
+    words += describe_no_sum(model, places)
     words += describe_untried(model, [place for place in places if place.q])
     workers = Workers(executor)
     return Search(problem, data_split, places, shortest, values, progress, words, workers)

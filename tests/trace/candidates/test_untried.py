@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
-from tracewire.trace.candidates.places import describe_untried, find_places
+from tracewire.residual import Measured
+from tracewire.trace.candidates.places import describe_no_sum, describe_untried, find_places
+from tracewire.trace.options import TraceOptions
+from tracewire.trace.trace import set_up_search
 
 ROTOR = """
 blocks:
@@ -26,7 +30,7 @@ def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
     model = compile(read_text(ROTOR.replace("FORMULA", formula)))
     found = find_places(model)
     assert found == []
-    (said,) = describe_untried(model, found)
+    (said,) = describe_no_sum(model, found)
     assert said.startswith("nothing is tried at sums: from net, other to a rate")
     assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
 
@@ -107,3 +111,14 @@ def test_a_place_with_both_is_not_talked_about() -> None:
         """
     model = compile(read_text(text))
     assert describe_untried(model, find_places(model)) == []
+
+
+def test_a_sum_that_has_a_rate_and_no_coordinate_is_a_place_as_others() -> None:
+    """A trace of a tank or a heater tries effects there, and must not say that it does not."""
+    text = "blocks: {v: {type: integrator, of: a, start: 1}, a: {type: sum, of: [-v]}}"
+    t = np.linspace(0, 5, 101)
+    swing = Measured("run", "train", t, {"v": np.exp(-t)}, start={"v": None})
+    model = compile(read_text(text))
+    search = set_up_search(model, [swing], 1e-6, lambda words: None, TraceOptions())
+    assert [place.name for place in search.places] == ["a"]
+    assert not [words for words in search.words if "nothing is tried" in words]

@@ -17,6 +17,7 @@ LEFT = {
     (DRIFT,): (0.7, 0.5),
     (DRY, DRIFT): (0.02, 0.04),
     (PLAY, DRY): (0.02, 0.04),
+    (PLAY,): (float("nan"), 0.3),
 }
 """The part of the declared model's squared error that is left at two horizons, by effects."""
 

@@ -105,9 +105,22 @@ def _shown(names: Sequence[str]) -> str:
     return ", ".join(names[: READING.most_names]) + " ..." * (len(names) > READING.most_names)
 
 
+def describe_no_sum(model: Model, places: Sequence[Place]) -> list[str]:
+    """In words, that none of all places is a sum, where the diagram has sums."""
+    blocks = model.diagram.blocks
+    sums = [name for name, use in blocks.items() if use.type == "sum" and not use.row]
+    if not sums or any(place.kind == "sum" for place in places):
+        return []
+    return [
+        f"nothing is tried at sums: from {_shown(sums)} to a rate the way is not through gains,"
+        " divisions and products alone; where one is the sum of what acts on a body, say so in "
+        "it, as in `place: {q: SIGNAL, v: SIGNAL}`"
+    ]
+
+
 def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
     """What cannot be tried, in words: at sums inside some subsystems, at rows of sums, at sums that
-    have no rate, or no coordinate, in drives that a delay reads, and where no sum is a place."""
+    have no rate, or no coordinate, and in drives that a delay reads."""
     diagram = model.diagram
     shut: dict[str, list[str]] = {}
     for path, why in closed_subsystems(diagram).items():
@@ -125,13 +138,6 @@ def describe_untried(model: Model, places: Sequence[Place]) -> list[str]:
         for name in _drives(model)
         if name in _delayed(model)
     ]
-    sums = [n for n, use in diagram.blocks.items() if use.type == "sum" and not use.row]
-    if sums and not any(place.kind == "sum" for place in places):
-        found.append(
-            f"nothing is tried at sums: from {_shown(sums)} to a rate the way is not through gains,"
-            " divisions and products alone; where one is the sum of what acts on a body, say so in "
-            "it, as in `place: {q: SIGNAL, v: SIGNAL}`"
-        )
     effects = diagram.library.effects()
     for place in places:
         missing = [s for s, signal in (("q", place.q), ("v", place.v)) if not signal]

@@ -128,7 +128,9 @@ class Prediction:
         for one in (self.entrants[number] for number in self.smaller()):
             if len(one.effects) == len(mine.effects) - 1:
                 (name,) = mine.effects - one.effects
-                found[name] = min(found.get(name, np.inf), one.leaves_more(mine))
+                taken = one.leaves_more(mine)
+                if np.isfinite(taken):  # that model runs
+                    found[name] = min(found.get(name, taken), taken)
         return found
 
     def without_effects(self) -> Prediction:
