@@ -48,13 +48,19 @@ def test_one_effect_has_no_share(names: tuple[str, ...]) -> None:
 @pytest.mark.parametrize(
     ("share", "words"),
     [
-        (0.038, "it takes 3.8 % of the squared error that was missing: so small a part may stand "),
-        (-0.01, "it takes 0 % of the squared error that was missing: so small a part may stand "),
+        (
+            0.038,
+            "coulomb @ forces takes 3.8 % of the squared error that was missing: so small",
+        ),
+        (
+            -0.01,
+            "coulomb @ forces takes 0 % of the squared error that was missing: so small",
+        ),
         (0.2, ""),
         (None, ""),
     ],
 )
 def test_a_small_share_is_told(share: float | None, words: str) -> None:
-    found = _small_share(share, TraceOptions())
+    found = _small_share(DRY, share, TraceOptions())
     assert found.startswith(words)
     assert bool(found) == bool(words)

@@ -136,7 +136,8 @@ def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
                 masked=masked,
                 weight=weight,
                 share=(share := final.shares.get(str(effect))),
-                doubt=_doubt_of(search, effect, final.best) or _small_share(share, search.options),
+                doubt=_doubt_of(search, effect, final.best)
+                or _small_share(str(effect), share, search.options),
             )
         )
     return tuple(found)
@@ -156,13 +157,13 @@ def _doubt_of(search: Search, effect: PlacedEffect, best: Trial) -> str:
     return describe_held_input(candidate.place.name, value, measured, options)
 
 
-def _small_share(share: float | None, options: TraceOptions) -> str:
-    """In words, that an effect takes little beside the others."""
+def _small_share(effect: str, share: float | None, options: TraceOptions) -> str:
+    """In words, that an effect takes little beside the others; '' where it does not."""
     if share is None or share >= options.small_share:
         return ""
     return (
-        f"it takes {two_digits(100 * max(share, 0.0))} % of the squared error that was missing:"
-        " so small a part may stand for another law"
+        f"{effect} takes {two_digits(100 * max(share, 0.0))} % of the squared error that was"
+        " missing: so small a part may stand for another law"
     )
 
 
