@@ -83,6 +83,46 @@ record: [stop.x, stop.v, stop.held]
 """
 
 
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("restitution", [0.0, 0.25, 1.0])
+def test_a_body_that_begins_on_its_stop_and_moves_into_it_strikes_it(
+    side: int, restitution: float
+) -> None:
+    """As if it had begun with the rate that it has after the impact."""
+    low, high = sorted((2 * side, -side))
+    text = f"""
+span: [0, 0.5]
+blocks:
+  stop: {{type: hard_stop, high: {high}, low: {low}, restitution: {restitution}, start: {2 * side}}}
+"""
+    found = run(text, start={"stop.v": side * 3.0})
+    back = -side * 3.0 * restitution
+    assert (found.events[0].kind, found.events[0].time) == ("impact", 0.0)
+    assert found.warnings == ()
+    assert found["stop.v"] == pytest.approx(np.full(len(found.t), back))
+    assert found["stop.x"] == pytest.approx(2 * side + back * found.t)
+
+
+def test_what_a_start_into_a_stop_does_has_its_derivatives() -> None:
+    start = {"stop.x": 2.0, "stop.v": 3.0}
+    names = ["e", "start.stop.v"]
+    found = run(STOPS, start=start, span=(0, 0.5), parameters={"e": 0.25}, sensitivities=names)
+    assert found.sensitivities["e"]["stop.x"] == pytest.approx(-3.0 * found.t)
+    assert found.sensitivities["start.stop.v"]["stop.x"] == pytest.approx(-0.25 * found.t)
+
+
+def test_two_bodies_that_begin_in_touch_and_approach_strike_each_other() -> None:
+    """Two equal elastic bodies exchange their rates."""
+    text = """
+span: [0, 1]
+blocks:
+  pair: {type: collision, restitution: 1, start_rate1: 3, start_rate2: 1}
+"""
+    found = run(text)
+    assert [event.kind for event in found.events] == ["impact"]
+    assert (found.final["pair.v1"], found.final["pair.v2"]) == pytest.approx((1.0, 3.0))
+
+
 def test_a_free_body_goes_to_and_fro_between_two_stops() -> None:
     """It moves at 3, then -1.5 from t = 2/3, then 0.75 from 2/3 + 2, and so on."""
     result = run(STOPS, times=[0.5, 1.0, 3.0, 10.0], rtol=1e-10)

@@ -161,7 +161,7 @@ def test_a_start_that_leaves_a_contact_is_as_any_other() -> None:
     assert result.final["x"] == pytest.approx(0.1 - 9.81 / 2 * 0.01)
 
 
-def test_a_start_on_a_contact_and_into_it_is_warned_of() -> None:
+def test_a_start_into_the_guard_of_an_event_of_the_diagram_is_warned_of() -> None:
     result = run(ON_THE_FLOOR, span=(0, 1), start={"v": -1.0})
     assert result.final["x"] == pytest.approx(-1 - 9.81 / 2)
     assert result.warnings == (

@@ -11,6 +11,7 @@ from tracewire.solve.core.codes import (
     DOWN,
     FINISHED,
     FLOOR,
+    GUARD,
     IMPACT,
     MEMORY,
     ON_GUARD,
@@ -48,9 +49,8 @@ def begin(core: int) -> int:
     status = settle(core, t, x, marks, True)
     if status != FINISHED:
         return status
-    _overlooked(core, t, x)
-    due = False
     no_crossings(core)
+    due = _strike(core, t, x)
     lines = np.empty(2 * len(plan.timed))
     if len(plan.timed):
         evaluate(core, TIMED, t, x, lines)
@@ -66,15 +66,16 @@ def begin(core: int) -> int:
 
 
 @unit
-def _overlooked(core: int, t: float, x: Vector) -> None:
-    """Mark the resets whose guard is zero at the start and leaves it as if they fired, and the
-    impacts whose guard is beyond zero."""
-    flow = flow_of(core)
-    plan = plan_of(core)
-    progress = progress_of(core)
+def _strike(core: int, t: float, x: Vector) -> bool:
+    """Let the impacts happen whose guard is zero at the start and moves beyond; whether there are
+    any. Mark the impacts whose guard is beyond zero there, and the resets whose guard is zero and
+    leaves it as if they fired."""
+    flow, plan = flow_of(core), plan_of(core)
+    progress, crossings = progress_of(core), crossings_of(core)
     guards, level = np.empty(len(plan.kind)), np.empty(len(plan.kind))
     guard_values(core, t, x, guards)
     levels(core, t, x, level)
+    found = False
     for reset in range(len(plan.resets)):
         i = plan.resets[reset, 0]
         if i < 0 or plan.kind[i] != SIGN or plan.is_timed[i] or flow.bound[i] != FREE:
@@ -82,10 +83,16 @@ def _overlooked(core: int, t: float, x: Vector) -> None:
         way = UP if flow.m[i] > 0.5 else DOWN
         if plan.resets[reset, 1] != way:
             continue
-        if abs(guards[i]) <= level[i]:
+        impact, on_guard = plan.resets[reset, 4] == IMPACT, abs(guards[i]) <= level[i]
+        if on_guard and impact:
+            crossings.how[i], crossings.to[i], crossings.up[i] = GUARD, flow.m[i], way == UP
+            flow.m[i] = 1.0 - flow.m[i]
+            found = True
+        elif on_guard:
             progress.overlooked[reset] = ON_GUARD
-        elif plan.resets[reset, 4] == IMPACT:
+        elif impact:
             progress.overlooked[reset] = BEYOND
+    return found
 
 
 @unit
