@@ -27,6 +27,7 @@ blocks:
 DIAGRAM = tw.read_text(TEXT)
 MODEL = tw.compile(DIAGRAM)
 RUN = tw.simulate(MODEL)
+loose: Any = tw  # to give what the annotations do not allow
 UNCHECKED = {"fminsearch", "optimset"}
 """Functions with the manners of another tool."""
 
@@ -78,24 +79,24 @@ def test_an_option_of_a_run_of_another_kind(given: dict[str, Any], said: str) ->
 @pytest.mark.parametrize(
     ("call", "said"),
     [
-        (lambda: tw.compile("a.yaml"), "diagram is 'a.yaml', and not a diagram. Read it first: tr"),  # type: ignore[arg-type]
+        (lambda: loose.compile("a.yaml"), "diagram is 'a.yaml', and not a diagram. Read it first:"),
         (lambda: tw.compile(DIAGRAM, record="x"), "record is 'x', and not a list of texts"),
-        (lambda: tw.save(RUN, "a.json"), "found is a Run, and not a trace. Make one: tracewire.tr"),  # type: ignore[arg-type]
-        (lambda: tw.simulate(DIAGRAM), "model is a Diagram, and not a model. Make one: trace"),  # type: ignore[arg-type]
-        (lambda: tw.fit(None), "model is None, and not a model"),  # type: ignore[arg-type]
-        (lambda: tw.fit(MODEL, 3), "measured is 3, and not a list of measured series. Load"),  # type: ignore[arg-type]
-        (lambda: tw.trace(RUN), "subject is a Run, and not a model or a fit"),  # type: ignore[arg-type]
+        (lambda: loose.save(RUN, "a.json"), "found is a Run, and not a trace. Make one: tracewire"),
+        (lambda: loose.simulate(DIAGRAM), "model is a Diagram, and not a model. Make one: trace"),
+        (lambda: loose.fit(None), "model is None, and not a model"),
+        (lambda: loose.fit(MODEL, 3), "measured is 3, and not a list of measured series. Load"),
+        (lambda: loose.trace(RUN), "subject is a Run, and not a model or a fit"),
         (lambda: tw.sweep(MODEL, {"k": "x"}, ["end(x)"]), "grid['k'] is 'x', and not an array of"),
         (lambda: tw.sweep(MODEL, {"k": [1]}, "end(x)"), "outputs is 'end(x)', and not a list of"),
-        (lambda: tw.simulate_many(MODEL, 3), "rows is 3, and not a list of values or a dict"),  # type: ignore[arg-type]
-        (lambda: tw.simulate_many(MODEL, [{"k": "x"}]), "rows[0]['k'] is 'x', and not a number"),  # type: ignore[dict-item]
-        (lambda: tw.floquet(MODEL, None), "period is None, and not a number or a text"),  # type: ignore[arg-type]
-        (lambda: tw.steady_state(MODEL, guess=3), "guess is 3, and not a dictionary of numbers"),  # type: ignore[arg-type]
-        (lambda: tw.growth_rate(MODEL, "x"), "run is a Model, and not a run. Make one: trace"),  # type: ignore[arg-type]
-        (lambda: tw.spectrum(RUN, 3), "signal is 3, and not a text"),  # type: ignore[arg-type]
-        (lambda: tw.read(3), "path is 3, and not a path"),  # type: ignore[arg-type]
-        (lambda: tw.report(MODEL), "subject is a Model, and not a run or a fit or a trace"),  # type: ignore[arg-type]
-        (lambda: tw.present(3), "result is 3, and not a result. Give what"),  # type: ignore[arg-type]
+        (lambda: loose.simulate_many(MODEL, 3), "rows is 3, and not a list of values or a dict"),
+        (lambda: loose.simulate_many(MODEL, [{"k": "x"}]), "rows[0]['k'] is 'x', and not a number"),
+        (lambda: loose.floquet(MODEL, None), "period is None, and not a number or a text"),
+        (lambda: loose.steady_state(MODEL, guess=3), "guess is 3, and not a dictionary of numbers"),
+        (lambda: loose.growth_rate(MODEL, "x"), "run is a Model, and not a run. Make one: trace"),
+        (lambda: loose.spectrum(RUN, 3), "signal is 3, and not a text"),
+        (lambda: loose.read(3), "path is 3, and not a path"),
+        (lambda: loose.report(MODEL), "subject is a Model, and not a run or a fit or a trace"),
+        (lambda: loose.present(3), "result is 3, and not a result. Give what"),
     ],
 )  # fmt: skip
 def test_an_argument_of_another_kind(call: Callable[[], Any], said: str) -> None:
@@ -119,19 +120,19 @@ def test_all_that_is_a_number_or_a_list_is_taken() -> None:
         assert tw.simulate(MODEL, parameters={"k": one}).parameters["k"] == float(one)
     for times in ([0, 1], (0.0, 1.0), np.arange(2), range(2)):
         assert len(tw.simulate(MODEL, times=times).t) == 2
-    assert tw.simulate(MODEL, span=np.array([0, 2])).t[-1] == 2  # type: ignore[arg-type]
+    assert loose.simulate(MODEL, span=np.array([0, 2])).t[-1] == 2
     held = tw.Held(np.array([0.0, 1.0]), np.array([1.0, 2.0]))
     for given in (held, ([0, 1], [1, 2]), [np.arange(2), np.arange(2)]):
-        tw.simulate(MODEL, inputs={"u": given})  # type: ignore[dict-item]
+        loose.simulate(MODEL, inputs={"u": given})
     for record in (["v"], ("v",), {"v"}, {"v": 1}.keys(), (name for name in ["v"])):
-        assert "v" in tw.compile(DIAGRAM, record=record).recorded  # type: ignore[arg-type]
+        assert "v" in loose.compile(DIAGRAM, record=record).recorded
 
 
 def test_what_is_missing_or_too_much_is_told_by_python() -> None:
     with pytest.raises(TypeError, match="missing 1 required positional argument: 'model'"):
-        tw.simulate()  # type: ignore[call-arg]
+        loose.simulate()
     with pytest.raises(TypeError, match="unexpected keyword argument 'spam'"):
-        tw.fit(MODEL, spam=3)  # type: ignore[call-arg]
+        loose.fit(MODEL, spam=3)
 
 
 def test_the_function_keeps_its_signature_and_its_words(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.solve import simulate
 from tracewire.trace.candidates.candidates import find_candidates
-from tracewire.trace.candidates.places import Place, find_places
+from tracewire.trace.candidates.places import Place, describe_no_sum, find_places
 from tracewire.trace.candidates.signal_scales import SignalScale, SignalScales
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.probes import add_probes
@@ -78,6 +78,16 @@ def test_a_sum_to_which_an_expression_is_proportional_is_a_place(formula: str) -
     assert places(ROTOR.replace("FORMULA", formula)) == [
         Place("net", "sum", "net", "phi", "omega", "alpha")
     ]
+
+
+@pytest.mark.parametrize("formula", ["tanh(net)", "net*other", "net**2", "k/net", "net + 1"])
+def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
+    model = compile(read_text(ROTOR.replace("FORMULA", formula)))
+    found = find_places(model)
+    assert found == []
+    (said,) = describe_no_sum(model, found)
+    assert said.startswith("nothing is tried at sums: from net, other to a rate")
+    assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
 
 
 def test_a_sum_that_only_feeds_another_sum_is_left_out() -> None:

@@ -5,34 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pytest
 from tracewire.compile import compile
 from tracewire.diagram import read, read_text
 from tracewire.residual import Measured
-from tracewire.trace.candidates.places import describe_no_sum, describe_untried, find_places
+from tracewire.trace.candidates.places import describe_untried, find_places
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trace import set_up_search
-
-ROTOR = """
-blocks:
-  phi: {type: integrator, of: omega}
-  omega: {type: integrator, of: alpha}
-  alpha: {type: expression, formula: FORMULA}
-  drag: {type: gain, of: omega, k: -1}
-  net: {type: sum, of: [drag]}
-  other: {type: sum, of: [phi]}
-parameters: {J: 2, k: 3}
-"""
-
-
-@pytest.mark.parametrize("formula", ["tanh(net)", "net*other", "net**2", "k/net", "net + 1"])
-def test_where_no_sum_is_a_place_that_is_said(formula: str) -> None:
-    model = compile(read_text(ROTOR.replace("FORMULA", formula)))
-    found = find_places(model)
-    assert found == []
-    (said,) = describe_no_sum(model, found)
-    assert said.startswith("nothing is tried at sums: from net, other to a rate")
-    assert said.endswith("say so in it, as in `place: {q: SIGNAL, v: SIGNAL}`")
 
 
 def test_a_row_of_sums_is_no_place_and_that_is_said() -> None:
