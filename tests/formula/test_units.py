@@ -40,6 +40,7 @@ from tracewire.formula.units import COHERENT, SYMBOLS, _convert
         ("min", "s", 60.0),
         ("%", "", 0.01),
         ("pct", "", 0.01),
+        ("mcd", "cd", 1e-3),
         ("kHz", "1/s", 1e3),
         ("kOhm", "ohm", 1e3),
         ("V/kOhm", "A", 1e-3),

@@ -37,8 +37,9 @@ WELL_FORMED = re.compile(rf"(?:1(?!\d)|[^\W\d]++{POWER}?|[°%]|[()\s]|\){POWER}|
 """Units and whole powers only: the unit library works out any number, such as 9**9**9, for ever."""
 
 
-HEADERS = ("rev = turn", "pct = percent")
-"""Units as headers of files have them; without this `pct` is the carat with a prefix."""
+HEADERS = ("rev = turn", "pct = percent", "mcd = 0.001 candela")
+"""Units as headers of files have them; without this `pct` is the carat with a prefix, and `mcd` a
+millionth of a day."""
 
 
 @dataclass(frozen=True)
