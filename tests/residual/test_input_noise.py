@@ -314,9 +314,17 @@ def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:
     assert np.mean([one.sigma for one in found]) == pytest.approx(FORCE_NOISE, rel=0.12)
     assert np.mean([one.after for one in found]) == pytest.approx(1.0, abs=0.08)
     assert min(one.before for one in found) > 5
+    assert min(one.evenness for one in found) > 0.6
     # a residual that no input makes: 30 times the noise, from sample to sample
     white = [(s, 30 * RNG.standard_normal(r.shape), slopes) for s, r, slopes in windows]
     assert likely_input_noise(response, "F", sigma, white).after > 5
+    # what a slow force makes has the size of some noise, and is not white
+    answers = response.impulses({"F": 1.0}, np.arange(length))[1:]
+    pull = answers @ np.sin(0.05 * np.arange(answers.shape[-1]))
+    slow = [(s, pull / SENSOR_NOISE, slopes) for s, _, slopes in windows]
+    one = likely_input_noise(response, "F", sigma, slow)
+    assert one.after < 2
+    assert one.evenness < 0.3
 
 
 def test_a_model_without_states_has_the_noise_of_its_input_as_it_is() -> None:

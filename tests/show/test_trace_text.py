@@ -39,6 +39,26 @@ def test_the_answer_to_an_effect() -> None:
     )
 
 
+def test_an_interval_says_what_it_does_not_count() -> None:
+    worse = tuple(replace(e, after=1.4 * e.sigma) for e in FOUND.errors)
+    said = (
+        "  something small is missing still, up to 1.4 σ in free runs: it may move a value farther"
+    )
+    assert [line.startswith(said) for line in answer_lines(replace(FOUND, errors=worse))].count(
+        True
+    )
+    assert not any(line.startswith(said) for line in answer_lines(FOUND))
+
+
+def test_a_null_says_where_whole_runs_are_off_by_more_than_the_noise() -> None:
+    worse = replace(NULL, errors=tuple(replace(e, after=1.5 * e.sigma) for e in NULL.errors))
+    assert answer_lines(worse)[-1] == (
+        "  On unseen data a free run is off by 1.5 σ, and in windows of "
+        f"{NULL.steps[-1].window:.3g} s the residual is the noise: what is missing is small and "
+        "slow, or noise of an input adds up in a run."
+    )
+
+
 def test_three_effects_are_a_list() -> None:
     (one,) = FOUND.effects
     three = replace(FOUND, effects=(one, replace(one, name="bias"), replace(one, name="cogging")))

@@ -2,7 +2,13 @@ from .criterion import LIMITS, Criterion, half_square
 from .files import series_from_files
 from .growing_parts import follow_growing_parts, is_out_of_step
 from .initial_states import fit_initial_states, restart_from_others
-from .input_noise import InputCovariance, likely_input_noise, response_in_windows, run_noise
+from .input_noise import (
+    InputCovariance,
+    LikelyNoise,
+    likely_input_noise,
+    response_in_windows,
+    run_noise,
+)
 from .input_response import InputNoise
 from .inputs import looks_held
 from .levenberg_marquardt import bounded_step, fit_windows
@@ -56,6 +62,7 @@ __all__ = [
     "Criterion",
     "InputCovariance",
     "InputNoise",
+    "LikelyNoise",
     "Linearisation",
     "Measured",
     "NoiseEstimate",

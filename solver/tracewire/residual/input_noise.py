@@ -35,12 +35,15 @@ class LikelyNoise:
     """The noise of an input that makes residuals in windows most likely: `sigma` in SI, and the
     reduced chi-square of the windows without it (`before`) and with it (`after`).
 
-    It explains the residuals where `after` is about 1: the sizes and the shapes of all of them.
+    It explains the residuals where `after` is about 1, and the noise is white: `evenness` is about
+    1, the ratio of what is left in that half of what it made that is fast to that in the slow half,
+    or the other way round, whichever is below 1. A law that is missing is slow.
     """
 
     sigma: float
     before: float
     after: float
+    evenness: float
 
 
 class InputCovariance:
@@ -125,7 +128,7 @@ def likely_input_noise(
         squares.append((left.T @ (rest @ residual.ravel())) ** 2)
     size, square = np.concatenate(sizes), np.concatenate(squares)
     if not len(size) or not np.max(size) > 0:
-        return LikelyNoise(0.0, float(np.mean(square)) if len(square) else 0.0, 0.0)
+        return LikelyNoise(0.0, float(np.mean(square)) if len(square) else 0.0, 0.0, 0.0)
 
     def unlikely(log: float) -> float:
 
@@ -140,8 +143,17 @@ def likely_input_noise(
     best = int(np.argmin([unlikely(log) for log in grid]))
     around = grid[max(best - 1, 0)], grid[min(best + 1, INPUT.grid - 1)]
     found = float(np.exp(minimize_scalar(unlikely, bounds=around, method="bounded").x))
-    after = float(np.mean(square / (1 + found * size)))
-    return LikelyNoise(found**0.5, float(np.mean(square)), after)
+    left = square / (1 + found * size)
+    evenness = _evenness(left[np.argsort(size)][np.sum(found * size <= 1) :])
+    return LikelyNoise(found**0.5, float(np.mean(square)), float(np.mean(left)), evenness)
+
+
+def _evenness(left: Vector) -> float:
+    """The ratio of the means of the first and the second half of what is left, at most 1."""
+    if len(left) < INPUT.least_halves:
+        return 1.0
+    halves = [float(np.mean(half)) for half in np.array_split(left, 2)]
+    return min(halves) / max(halves)
 
 
 def response_in_windows(

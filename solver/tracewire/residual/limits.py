@@ -141,6 +141,8 @@ class InputLimits:
     """Residuals of a window whose covariance is made: a free run's would fill the memory."""
     kept: Final[float] = 2.5e7
     """Numbers of such covariances that are kept: 200 MB."""
+    least_halves: Final[int] = 40
+    """Numbers that the noise of an input made, at least, for a look at whether it is white."""
 
 
 INPUT = InputLimits()

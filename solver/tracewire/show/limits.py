@@ -271,6 +271,8 @@ class WordLimits:
     excess needs a word about how much of the error it is."""
     far: Final[float] = 2.0
     """Times the noise from which on a null needs a word about what the noise is not."""
+    left: Final[float] = 1.2
+    """Times the noise from which on a run shows that something is missing still."""
     least_separation: Final[float] = 0.1
     """In sigma; one of less needs no number."""
 

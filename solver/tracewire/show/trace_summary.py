@@ -15,6 +15,7 @@ from tracewire.show.trace_words import (
     excess_words,
     few_of,
     in_sigma,
+    interval_words,
     missing_dependence,
     missing_place_words,
     missing_words,
@@ -238,10 +239,24 @@ def far_words(found: Found) -> str:
     """What a residual may be that no effect reduces and that is more than the noise; '' where it is
     not."""
     if found.s2_before**0.5 <= WORD.far:
-        return ""
+        return _slow_words(found)
     return (
         "It is more than the noise that was assumed, and follows nothing that was tried: "
         f"it may be {both_of([*PERHAPS, 'a noise that is larger than assumed'], 'or')}. {REPEAT}"
+    )
+
+
+def _slow_words(found: Found) -> str:
+    """That whole runs are off by more than the noise where windows are not; '' where they are
+    not."""
+    errors, (_, runs_are) = unseen_errors(found), runs_words(found)
+    left = in_sigma(errors, "after") if errors else 0.0
+    if not WORD.left <= left < math.inf or not found.steps:
+        return ""
+    return (
+        f"On unseen data {runs_are} off by {left:.3g} σ, and in windows of "
+        f"{found.steps[-1].window:.3g} s the residual is the noise: what is missing is small and"
+        " slow, or noise of an input adds up in a run."
     )
 
 
@@ -256,7 +271,9 @@ def _effect(found: Found) -> list[str]:
     if not unseen_errors(found):
         parts.append("No data were kept back for a final test.")
     doubts = [f"{effect.doubt}." for effect in found.effects if effect.doubt]
-    return [*parts, *_remains(found), *_ties(found), *doubts, _moved(found)]
+    sure = interval_words(found)
+    sure = f"{sure[:1].upper()}{sure[1:]}." if sure else ""
+    return [*parts, *_remains(found), sure, *_ties(found), *doubts, _moved(found)]
 
 
 def meaning_words(found: Found, effect: FoundEffect) -> str:

@@ -27,6 +27,7 @@ from tracewire.show.trace_words import (
     error_words,
     excess_words,
     in_sigma,
+    interval_words,
     missing_dependence,
     missing_place_words,
     missing_words,
@@ -65,6 +66,8 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         lines.append(f"  explained: {explained}")
     lines += _error_lines(found)
     lines += _remainder_lines(found)
+    if sure := interval_words(found):
+        lines.append(f"  {sure}")
     shifts = [moved_words(m) for m in found.moved if stood_in(m) and m.name not in found.dropped]
     if shifts:
         lines.append(f"  had absorbed part of the missing effect: {', '.join(shifts)}")

@@ -135,6 +135,20 @@ def unseen_errors(found: Found) -> tuple[ChannelError, ...]:
     return tuple(e for e in found.errors if e.kind == kind and e.use == "validate")
 
 
+def interval_words(found: Found) -> str:
+    """What the intervals of an effect's values do not count; '' where runs are at the noise."""
+    kind = "windowed" if astray_words(found) else "free run"
+    known = [e for e in found.errors if e.kind == kind and e.sigma > 0]
+    left = [e.after / e.sigma for e in known if math.isfinite(e.after)]
+    if not found.effects or max(left, default=0.0) < WORD.left:
+        return ""
+    runs, _ = runs_words(found)
+    return (
+        f"something small is missing still, up to {max(left):.3g} σ in {runs}: it may move a value"
+        " farther than its interval says"
+    )
+
+
 def astray_words(found: Found) -> str:
     """That free runs tell little, as those of a model that is unstable or chaotic; '' where they
     stay near the windows."""

@@ -81,8 +81,8 @@ round in a circle all combinations are tried, and none or several that fit are a
 flights shorten below what can be resolved closes at t + flight/(1 - ratio) and rests: its guard is
 held at zero by a force in the direction of its reset, until that force would have to pull. A guard
 of an impact that is zero with g' = 0 and g'' < 0 rests at once, at the start and later. The force
-is no signal; `is_held(g)` tells that it acts. An event of the kind `impact` fires at the start, too,
-where the start lies on its contact and moves into it. Another event does not, and a warning says so.
+is no signal; `is_held(g)` tells that it acts. A start that lies on a contact and moves into it
+fires an event of the kind `impact` there. Another event does not fire, and a warning says so.
 
 **Known times.** Guards that are a line in t (square, step, ramp, clocks, breakpoints of tables in
 t) change at computed times that steps end on; breakpoints of tables are not logged. Where the line

@@ -198,6 +198,9 @@ class TraceOptions:
     more may be meant so."""
     input_left: float = 2.0
     """The reduced chi-square below which the noise of an input explains a residual."""
+    input_even: float = 0.5
+    """The evenness from which on that noise is white. It was 0.99 of a force's noise, and 0.22 to
+    0.74 of a hidden law, by series."""
     input_depends: float = 0.8
     """The share of an excess that a smooth map explains, from which on it is no noise of an input:
     any force that is missing where the input acts has the size of some noise. A map of the rate of
@@ -294,6 +297,9 @@ class TraceOptions:
     """Standard errors of a reduced chi-square, sqrt(2/freedom), up to which it is at the noise."""
     confidence: float = 0.95
     """Of the intervals of fitted values and of shares."""
+    interval_blocks: int = 12
+    """Blocks of time, at least, over which the residual differs for the intervals of values: what
+    is missing besides is no noise. With 6 to 48 the widths agreed to a third on three rigs."""
     shown: int = 12
     """Rows of each table of what was tried."""
     told: int = 3

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 from tracewire.diagram import read_text
 from tracewire.residual import Measured
 from tracewire.trace.options import TraceOptions
-from tracewire.trace.results.result import _intervals_of
+from tracewire.trace.results.intervals import reported_intervals
 
 DRUM = """\
 span: [0, 20]
@@ -42,7 +42,8 @@ def test_a_drum_that_coasts_down_is_not_released_to_tell_a_friction_from_a_torqu
 def test_an_interval_ends_at_the_bound_of_its_number() -> None:
     """More than the damping is taken away: c sits on 0, and a negative one is none."""
     trial = trial_of(problem_of(record(lambda x, v: 0.5 * v)))
-    whole, told = trial.intervals(0.95), _intervals_of(trial, 0.95)
-    assert whole["c"][0] < 0
-    assert told["c"] == (0.0, whole["c"][1])
-    assert told["k"] == whole["k"]
+    whole, told = trial.intervals(0.95), reported_intervals(trial, TraceOptions())
+    assert whole["c"][0] < 0 == told["c"][0]
+    assert told["c"][1] >= whole["c"][1]
+    assert told["k"][0] <= whole["k"][0]
+    assert told["k"][1] >= whole["k"][1]

@@ -11,6 +11,7 @@ from tracewire.errors import FitError, SimulationError
 from tracewire.formula import two_digits
 from tracewire.residual import (
     InputCovariance,
+    LikelyNoise,
     Measured,
     likely_input_noise,
     noise_of_signal,
@@ -96,7 +97,7 @@ def noisy_inputs(search: Search, trial: Trial) -> tuple[LikelyInput, ...]:
     series: dict[str, list[int]] = {}
     for number, segment in enumerate(windows.criterion.segments):
         series.setdefault(segment.measured.name, []).append(number)
-    found: dict[str, list[tuple[float, float]]] = {}
+    found: dict[str, list[LikelyNoise]] = {}
     for numbers in series.values():
         measured = windows.criterion.segments[numbers[0]].measured
         if measured.input_sigma:
@@ -107,18 +108,22 @@ def noisy_inputs(search: Search, trial: Trial) -> tuple[LikelyInput, ...]:
     return tuple(
         LikelyInput(
             name,
-            float(np.median([size for size, _ in noises])),
-            max(left for _, left in noises),
+            float(np.median([noise.sigma for noise in noises])),
+            max(noise.after for noise in noises),
         )
         for name, noises in found.items()
-        if len(noises) == len(series) and max(left for _, left in noises) < options.input_left
+        if len(noises) == len(series)
+        and all(
+            noise.after < options.input_left and noise.evenness > options.input_even
+            for noise in noises
+        )
     )
 
 
 def _noises(
     search: Search, trial: Trial, measured: Measured, numbers: list[int]
-) -> Mapping[str, tuple[float, float]]:
-    """The likely noise of each input of a series, and the reduced chi-square that it leaves."""
+) -> Mapping[str, LikelyNoise]:
+    """The likely noise of each input of a series."""
     windows, values = trial.windows, search.problem.all_values(trial)
     count, segments = len(windows.values), windows.segments
     parts = [
@@ -137,5 +142,5 @@ def _noises(
         except SimulationError:
             continue
         if 0 < noise.sigma <= search.options.input_noise * float(np.std(measured.inputs[name][1])):
-            found[name] = noise.sigma, noise.after
+            found[name] = noise
     return found

@@ -13,6 +13,7 @@ from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.solve import parameter_values
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
+from tracewire.trace.results.intervals import reported_errors
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.free_run import first_part, free_run
@@ -128,7 +129,7 @@ def parameter_changes(
     problem: TraceProblem, declared: Trial, best: Trial, values: dict[str, float]
 ) -> list[ParameterChange]:
     """The declared parameters without and with the effects."""
-    errors, flat = best.standard_errors, problem.declared.flat
+    errors, flat = reported_errors(best, problem.options), problem.declared.flat
     known, given = flat.parameters, parameter_values(problem.declared, {})
     held = {one.name for one in at_bounds(declared)}
     return [

@@ -41,6 +41,7 @@ from tracewire.trace.results.comparison import (
     with_unseen_phases,
 )
 from tracewire.trace.results.held_inputs import describe_held_input
+from tracewire.trace.results.intervals import reported_intervals
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.search.refinement import FinalModels, Rival, largest_first
 from tracewire.trace.search.search import Search, Step
@@ -113,7 +114,7 @@ def result_of(
 
 def _effects_of(search: Search, final: FinalModels) -> tuple[FoundEffect, ...]:
     """The effects of the result, the one that brings most first."""
-    ends = _intervals_of(final.best, search.options.confidence) if final.best.effects else {}
+    ends = reported_intervals(final.best, search.options) if final.best.effects else {}
     found = []
     for effect in final.best.effects:
         gain, masked, weight = _scores_of(search, effect)
@@ -165,17 +166,6 @@ def _small_share(effect: str, share: float | None, options: TraceOptions) -> str
         f"{effect} takes {two_digits(100 * max(share, 0.0))} % of the squared error that was"
         " missing: so small a part may stand for another law"
     )
-
-
-def _intervals_of(trial: Trial, confidence: float) -> dict[str, tuple[float, float]]:
-    """The intervals of fitted values, as far as they lie within the bounds of these: no share is
-    more than all."""
-    bounds = {u.name: (u.low, u.high) for u in trial.windows.criterion.unknowns}
-    found = {}
-    for name, (low, high) in trial.intervals(confidence).items():
-        least, most = bounds.get(name, (-np.inf, np.inf))
-        found[name] = max(low, least), min(high, most)
-    return found
 
 
 def _tie_of(rival: Rival) -> Tie:
