@@ -16,26 +16,9 @@ PACKAGE = ROOT / "solver" / "tracewire"
 BLOCKS = ROOT / "blocks"
 
 # a room may import itself and the rooms before it
-ROOMS = [
-    "errors",
-    "arguments",
-    "extras",
-    "files",
-    "npm",
-    "shipped",
-    "result",
-    "options",
-    "blas",
-    "resume",
-    "formula",
-    "library",
-    "data",
-    "diagram",
-    "elk",
-    "draw",
-    "compile",
-]
-ROOMS += ["solve", "residual", "fit", "trace", "analyse", "show", "view", "paper", "cli"]
+ROOMS = ["array_types", "errors", "arguments", "extras", "files", "npm", "shipped", "result"]
+ROOMS += ["options", "blas", "resume", "formula", "library", "data", "diagram", "elk", "draw"]
+ROOMS += ["compile", "solve", "residual", "fit", "trace", "analyse", "show", "view", "paper", "cli"]
 # the same for the stages of a trace, files and folders of that room
 STAGES = [
     "limits",

@@ -20,6 +20,7 @@ from tracewire.analyse.poincare_section import extent_of, take_points
 from tracewire.analyse.turns import units_of
 from tracewire.analyse.work import interrupted
 from tracewire.arguments import checked
+from tracewire.array_types import Cube, Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
 from tracewire.options import options_of
@@ -34,11 +35,8 @@ from tracewire.solve import (
     parameter_values,
 )
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Carried = tuple[float, Vector] | None
 """Time and states at the end of the value before."""
-Cube = NDArray[np.float64]
 Direction = Literal["up", "down", "both", "up_down", "down_up", "apart"]
 BRANCHES: dict[str, tuple[tuple[str, ...], ...]] = {
     "up": (("up",),),

@@ -10,13 +10,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.limits import ROOT
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
+from tracewire.array_types import Complexes, Matrix
 
 
 def characteristic_roots(a: Matrix, terms: Mapping[float, Matrix]) -> Complexes:

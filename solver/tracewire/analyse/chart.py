@@ -15,13 +15,11 @@ from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.work import work_through
 from tracewire.arguments import checked
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
 from tracewire.solve import ProgressCallback, StopFlag
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,9 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from tracewire.analyse.limits import SECTION
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
+from tracewire.array_types import Matrix, Vector
 
 
 def count_clusters(

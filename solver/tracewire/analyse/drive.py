@@ -7,16 +7,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.limits import SECTION
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.diagram import find_recorded
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import CONSTANTS, evaluate, names_of, parse
 from tracewire.solve import Passage
-
-Vector = NDArray[np.float64]
 
 
 def number(model: Model, given: float | str, values: Mapping[str, float], what: str) -> float:

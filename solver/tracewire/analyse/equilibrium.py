@@ -10,14 +10,12 @@ lies on it from then on; at any other guard the modes are decided anew, and a sl
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.limits import EQUILIBRIUM
+from tracewire.array_types import Vector
 from tracewire.errors import AnalysisError, Problem, SimulationError
 from tracewire.solve import Passage
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 EPSILON = float(np.finfo(float).eps)
 
 

@@ -7,20 +7,16 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import number, period_of
 from tracewire.analyse.limits import ORBIT
 from tracewire.arguments import checked
+from tracewire.array_types import Complexes, Matrix
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -6,14 +6,13 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.analyse.limits import SWEEP
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve import START
-
-Vector = NDArray[np.float64]
 
 
 def grid_of(model: Model, grid: Mapping[str, ArrayLike]) -> dict[str, Vector]:

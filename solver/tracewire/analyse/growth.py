@@ -12,11 +12,10 @@ from scipy.signal import find_peaks
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import floor_of, signal_of, vertex
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

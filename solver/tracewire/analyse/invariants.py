@@ -6,14 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -9,7 +9,6 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
 from tracewire.analyse.characteristic import characteristic_roots
@@ -17,15 +16,13 @@ from tracewire.analyse.equilibrium import describe_rates, is_steady, state_sizes
 from tracewire.analyse.internal_delays import InternalDelays
 from tracewire.analyse.limits import EQUILIBRIUM
 from tracewire.arguments import checked
+from tracewire.array_types import Complexes, Matrix, Vector
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import to_text
 from tracewire.result import Result
 from tracewire.solve import Passage
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 NOT_STEADY = "not a steady state"
 
 

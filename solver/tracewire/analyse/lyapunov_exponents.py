@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.plane import span_of
 from tracewire.arguments import checked
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.result import Result
@@ -23,8 +24,6 @@ from tracewire.solve import (
     until_interrupted,
 )
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(32)  # on [-1, 1]
 SMOOTH = {"scheduled"}  # what may happen without a jump of the deviations
 

@@ -7,20 +7,17 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.drive import is_driven, number, period_of
 from tracewire.analyse.floquet_multipliers import Floquet
 from tracewire.analyse.limits import ORBIT
 from tracewire.analyse.turns import units_of, within_a_turn
 from tracewire.arguments import checked
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, SimulationError
 from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

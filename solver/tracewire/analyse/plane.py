@@ -7,18 +7,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.drive import number, period_of, rising_edges
 from tracewire.analyse.limits import SECTION
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
 from tracewire.formula import evaluate
 from tracewire.solve import Passage, guard_crossings, parameter_values
 from tracewire.solve.core.codes import LOG_HEAD
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

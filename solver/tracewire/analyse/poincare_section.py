@@ -7,21 +7,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.analyse.clusters import count_clusters, is_irregular
 from tracewire.analyse.limits import SECTION
 from tracewire.analyse.plane import Plane, crossings, span_of
 from tracewire.analyse.turns import units_of
 from tracewire.arguments import checked
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.result import Result
 from tracewire.solve import Passage, parameter_values
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.limits import SIGNAL
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.solve import Run
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,18 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.signal import find_peaks, get_window
 
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
 from tracewire.solve import Run
 
-Vector = NDArray[np.float64]
 WINDOWS = ("hann", "flattop", "blackman", "boxcar")
 WIDE = {"hann": 2.0, "flattop": 5.0, "blackman": 3.0, "boxcar": 1.0}  # half of a line, in bins
 

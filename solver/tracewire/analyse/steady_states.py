@@ -6,21 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse import verdict
 from tracewire.analyse.drive import is_driven
 from tracewire.analyse.equilibrium import find_equilibrium
 from tracewire.analyse.linearisation import linearise, nonsmooth
 from tracewire.arguments import checked
+from tracewire.array_types import Complexes, Matrix, Vector
 from tracewire.compile import Model, at_rest
 from tracewire.errors import AnalysisError, Problem
 from tracewire.result import Result
 from tracewire.solve import Passage
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

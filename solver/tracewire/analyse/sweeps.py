@@ -26,6 +26,7 @@ from tracewire.analyse.quantities import (
 )
 from tracewire.analyse.work import IncompleteRow, work_through
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.compile import Model, unit_of_quantity
 from tracewire.diagram import quantity_problems, row_ends
 from tracewire.errors import OptionError, Problem, TracewireError, unknown
@@ -39,9 +40,6 @@ from tracewire.solve import (
     refuse_unknown_options,
     with_row,
 )
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
-
-Vector = NDArray[np.float64]
 
 
 def units_of(model: Model, modulo: Mapping[str, float]) -> Vector:

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
+from tracewire.array_types import Complexes
+
 Verdict = Literal["stable", "unstable", "neutral"]
 
 

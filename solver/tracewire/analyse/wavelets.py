@@ -11,12 +11,11 @@ from scipy.fft import fft, ifft, next_fast_len
 from tracewire.analyse.limits import SIGNAL
 from tracewire.analyse.signal import signal_of, vertex
 from tracewire.arguments import checked
+from tracewire.array_types import Matrix, Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.result import Result
 from tracewire.solve import Run
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 REACH = np.sqrt(2.0)  # e-folding time of the wavelet in its scale
 
 

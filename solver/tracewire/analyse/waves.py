@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse.signal import vertex
+from tracewire.array_types import Vector
 
-Vector = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 

@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.partial import Partial
+from tracewire.array_types import Vector
 from tracewire.errors import Problem, TracewireError
 from tracewire.solve import Interrupted, PartProgress, ProgressCallback, StopFlag, carry_out
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile.constants import Constants
 from tracewire.compile.delays import jump_orders
 from tracewire.compile.differentiate import differentiate, gradients
@@ -23,7 +24,6 @@ from tracewire.compile.sizes import sizes
 from tracewire.compile.source import Function, Writer, guarded, load
 from tracewire.compile.straight import weights
 
-Vector = NDArray[np.float64]
 Backend = Literal["llvm", "quick", "python"]
 BACKENDS: tuple[Backend, ...] = ("llvm", "quick", "python")
 ORDERS = {"guard_second": 2, "guard_third": 3, "guard_fourth": 4}

@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data.limits import CHECK, FILE
 
-Vector = NDArray[np.float64]
 Marks = NDArray[np.bool_]
 
 

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Vector = NDArray[np.float64]
+from tracewire.array_types import Vector
+
 NANO = 1_000_000_000
 EPOCH = datetime(1970, 1, 1)
 DATE = re.compile(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data.limits import STEP
 
-Vector = NDArray[np.float64]
 NORMAL = 1.4826  # a normal distribution's standard deviation over its median absolute deviation
 FOURTH = 70.0  # 1 + 16 + 36 + 16 + 1: the variance of a fourth difference of white noise of 1
 

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from tracewire.array_types import Vector
 from tracewire.data.limits import FILE
 from tracewire.data.matfile import Cells, Damaged, Other, Structs, Value, variables_of
 from tracewire.data.matlab_hdf5 import is_matlab_hdf5, variables_of_hdf5
-from tracewire.data.request import Found, Request, Vector
+from tracewire.data.request import Found, Request
 from tracewire.data.vectors import found_of
 from tracewire.errors import DataError, Location, Problem, unknown
 

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data.formats import opened
 from tracewire.data.record import Record
-from tracewire.data.request import Found, Request, Vector
+from tracewire.data.request import Found, Request
 from tracewire.errors import DataError, FormulaError, Location, OptionError, Problem
 from tracewire.formula import Unit, has_offset, read_unit, same_quantity
 

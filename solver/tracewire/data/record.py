@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data import filters
 from tracewire.data.limits import FILE, STEP
 from tracewire.data.steps import STEPS
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Unit, read_unit
 
-Vector = NDArray[np.float64]
 ONE, SECOND = Unit("", 1.0), Unit("s", 1.0)
 
 

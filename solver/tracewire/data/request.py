@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data.limits import FILE
 from tracewire.errors import DataError, Location, Problem
 
-Vector = NDArray[np.float64]
 NO_ROWS = "A series needs at least two rows of numbers."
 SORT = "Sort the rows, in a series by clean: [sort]; or split the file, or choose rows by `where`."
 ONCE = "Keep one row for each time, in a series by clean: [{sort: {duplicates: first}}]."

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data.dates import read_dates, seconds_since_first
 from tracewire.data.limits import FILE
 from tracewire.data.request import (
     Found,
     Request,
-    Vector,
     none_left,
     problems_of,
     raise_first,

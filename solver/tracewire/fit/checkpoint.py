@@ -8,15 +8,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tracewire.errors import Location, OptionError, Problem
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
 from tracewire.resume import ResumeFile
 
-Vector = NDArray[np.float64]
 KIND = "a fit of tracewire"
 KEYS = ("method", "seed", "names", "best", "state", "evaluations", "iterations", "history")
 

@@ -7,12 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.fit.identify import FlatDirection, ParameterColumns
 from tracewire.fit.limits import UNCERTAINTY
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.fit.result import Comparison
 from tracewire.fit.weighing import noise_instead_of_units
@@ -19,8 +19,6 @@ from tracewire.residual import (
     solve_least_squares,
     wrap_to_period,
 )
-
-Vector = NDArray[np.float64]
 
 
 def outputs_by_series(

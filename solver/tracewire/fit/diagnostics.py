@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc, ndtr, ndtri
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.errors import FormulaError, SimulationError
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison, Fit
@@ -26,8 +27,6 @@ from tracewire.residual import (
     run_noise,
 )
 from tracewire.solve import parameter_values, values_at
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

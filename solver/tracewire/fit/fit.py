@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
@@ -53,8 +53,6 @@ from tracewire.residual import (
 )
 from tracewire.solve import parameter_values
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 AMPLE = "10000*numberofvariables"
 """The limits of a method that is not Scilab's, where no options are given."""
 

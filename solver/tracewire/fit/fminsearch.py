@@ -27,14 +27,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tracewire.array_types import Vector
 from tracewire.errors import FitError, OptionError
 from tracewire.fit.limits import SIMPLEX
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.options import options_of
-
-Vector = NDArray[np.float64]
 
 STOPPED, LIMIT, CONVERGED = range(-1, 2)
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.blas import one_blas_thread
 from tracewire.errors import FitError, OptionError, Problem, unknown
 from tracewire.fit.limits import PROFILE
@@ -18,9 +19,6 @@ from tracewire.fit.uncertainty import criterion_unit
 from tracewire.fit.weighing import noise_instead_of_units
 from tracewire.residual import Criterion, Unknown, solve_least_squares, whole_segment
 from tracewire.result import Result
-
-Vector = NDArray[np.float64]
-
 
 Step = tuple[float, float, NDArray[np.float64]]
 """A value, the rise there, and the other scaled unknowns."""

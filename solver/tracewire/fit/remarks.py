@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.fit.limits import DIAGNOSIS
 from tracewire.fit.result import Comparison
 from tracewire.fit.uncertainty import Uncertainty
 from tracewire.formula import Name, two_digits
 from tracewire.residual import Criterion, Measured, begins_elsewhere
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-
 
 ENDED = "ended before a minimum"
 GO_ON = "go on with --method least_squares"

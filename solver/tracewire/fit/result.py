@@ -8,12 +8,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.fit.uncertainty import Uncertainty
 from tracewire.residual import Measured, wrap_to_period
 from tracewire.result import Result
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,15 +8,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.fit.limits import SEARCH
 from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.result import Comparison, Improvement
 from tracewire.residual import Criterion, half_square
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

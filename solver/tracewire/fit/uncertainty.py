@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.fit.combinations import Direction, describe_directions, followers
 from tracewire.fit.identify import LinearResponse, ParameterColumns, flat_directions
 from tracewire.fit.limits import UNCERTAINTY
@@ -21,9 +22,6 @@ from tracewire.residual import (
     noises_beside,
     project_out_initial_states,
 )
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,14 +7,12 @@ from functools import reduce
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.errors import FormulaError
 from tracewire.formula.expression import Expression, Name, Number
 from tracewire.formula.functions import CONSTANTS, OPERATIONS
 from tracewire.formula.text import to_text
-
-Vector = NDArray[np.float64]
 
 
 def _of_numpy(name: str) -> Callable[..., Any]:

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.compile import Model, compile
 from tracewire.diagram import read
@@ -16,7 +16,6 @@ from tracewire.paper.figure import PaperFigure
 from tracewire.shipped import shipped
 from tracewire.solve import Run, simulate
 
-Vector = NDArray[np.float64]
 Amount = Literal["quick", "usual", "full"]
 """How much is computed: enough to see that it works, to see the figure, as much as the paper."""
 

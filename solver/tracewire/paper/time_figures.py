@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracewire.analyse import spectrum
-from tracewire.paper.setting import Task, Vector, label, symbol
+from tracewire.array_types import Vector
+from tracewire.paper.setting import Task, label, symbol
 from tracewire.show.style import LINES, MARK, fit_time, panels
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracewire.analyse import Plane, bifurcation, lyapunov, section
-from tracewire.paper.setting import RTOL, Task, Vector, label, symbol
+from tracewire.array_types import Vector
+from tracewire.paper.setting import RTOL, Task, label, symbol
 from tracewire.show.style import LINES, MARK, QUIET, fit_time, panels
 from tracewire.solve import Run, simulate
 

@@ -6,15 +6,14 @@ from collections.abc import Iterable, Mapping
 from typing import Any, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.data import read_frame, record_of, signal_remarks, time_remarks
 from tracewire.diagram import Hold, Use
 from tracewire.errors import DataError, FormulaError, Location, OptionError, Problem, unknown
 from tracewire.residual.inputs import between_samples
 from tracewire.solve import Driving, with_points
 
-Vector = NDArray[np.float64]
 NO_VALUE = "Leave out the rows without a value."
 SORT = "Sort the rows by t, and keep one for each time."
 

@@ -12,8 +12,8 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import DataError, OptionError, Problem, SimulationError, unknown
 from tracewire.residual.limits import CRITERION
@@ -22,8 +22,6 @@ from tracewire.residual.loss import LOSSES
 from tracewire.residual.segment import Segment, Unknown
 from tracewire.solve import Interrupted, Limits, StopFlag, beyond_budget, cores, until_interrupted
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Weighting = Literal["mean", "sum"]
 Numbers = tuple[int, ...]
 LIMITS = Limits(steps=500_000, seconds=120.0)

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual.limits import WINDOW
 from tracewire.residual.starts import start_from_data
 from tracewire.residual.windows import Windows, keep_better, with_initial_states
-
-Vector = NDArray[np.float64]
 
 
 def fit_initial_states(windows: Windows, steps: int = WINDOW.initial_state_steps) -> Windows:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model, compile
 from tracewire.residual.input_response import (
     InputNoise,
@@ -25,9 +26,6 @@ from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment, of_diagram
 from tracewire.residual.starts import whole_segment
 from tracewire.solve import simulate
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

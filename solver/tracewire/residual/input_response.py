@@ -11,15 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model, compile
 from tracewire.residual.limits import INPUT
 from tracewire.residual.measured import Measured
 from tracewire.residual.segment import of_diagram
 from tracewire.residual.starts import start_from_data
 from tracewire.solve import Driving, Held, Span, SpanRuns, refuse_delays, simulate_spans, values_at
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

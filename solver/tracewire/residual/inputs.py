@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.diagram import Hold
 from tracewire.residual.limits import INPUT
 from tracewire.solve import Driving, Held
@@ -14,7 +14,6 @@ from tracewire.solve import Driving, Held
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline  # scipy is slow to import: who needs a part does it
 
-Vector = NDArray[np.float64]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 

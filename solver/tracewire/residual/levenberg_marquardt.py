@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.residual.initial_states import (
     fit_initial_states,
     is_far_off,
@@ -25,9 +25,6 @@ from tracewire.residual.windows import (
     project_out_initial_states,
     with_initial_states,
 )
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def fit_windows(

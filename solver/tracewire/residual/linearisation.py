@@ -9,8 +9,8 @@ from itertools import accumulate, pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import Problem, SimulationError
 from tracewire.residual.limits import CRITERION, WINDOW
@@ -25,8 +25,6 @@ from tracewire.residual.segment import (
 )
 from tracewire.solve import Interrupted, Limits, Span, SpanProblem, SpanRuns, StopFlag, span_problem
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Names = list[tuple[str, ...]]
 
 

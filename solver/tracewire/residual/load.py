@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.data import Record, input_remarks
 from tracewire.diagram import Series
@@ -24,8 +25,6 @@ from tracewire.residual.remarks import check_quantities, factor_of_column, remar
 from tracewire.residual.rest import states_at_rest
 from tracewire.residual.sensor import read_sensor
 from tracewire.solve import Driving, parameter_values
-
-Vector = NDArray[np.float64]
 
 
 def measured_series(model: Model, name: str) -> Measured:

@@ -6,11 +6,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Array
 from tracewire.residual.limits import CRITERION
-
-Array = NDArray[np.float64]
 
 
 class Lossy(NamedTuple):

@@ -10,8 +10,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model, compile, find_name_clashes
 from tracewire.diagram import Hold, Use
 from tracewire.errors import DataError, OptionError, Problem
@@ -19,8 +19,6 @@ from tracewire.residual.arrays import ArrayCheck, fields_of_frame
 from tracewire.residual.local_quartics import quartic_points
 from tracewire.residual.sensor import PLAIN, Sensor
 from tracewire.solve import Driving, Options
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,11 @@ from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual.limits import NOISE
 from tracewire.residual.readings import MAD, interpolation, replace_outliers, rounding_step
 from tracewire.residual.spectrum import Spectrum, spectrum_of
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

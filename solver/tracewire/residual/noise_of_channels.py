@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual.limits import NOISE
 from tracewire.residual.measured import Measured
 from tracewire.residual.noise_estimate import NoiseEstimate, noise_of_signal
 from tracewire.residual.readings import rounding_step
-
-Vector = NDArray[np.float64]
 
 
 def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:

@@ -13,14 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Cube, Vector
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual.limits import CRITERION
 from tracewire.residual.segment import Segment
 from tracewire.residual.sensor import Sensor
 from tracewire.solve import SpanRuns
-
-Vector = NDArray[np.float64]
-Cube = NDArray[np.float64]
 
 
 class ObservationModel:

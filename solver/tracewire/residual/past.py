@@ -6,8 +6,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model, compile
 from tracewire.errors import Location, OptionError, Problem
 from tracewire.formula import evaluate
@@ -17,7 +17,6 @@ from tracewire.residual.starts import states_from_data
 from tracewire.residual.unknowns import moved_by_fit
 from tracewire.solve import Driving, Span, parameter_values, simulate_spans
 
-Vector = NDArray[np.float64]
 MEASURE = "Measure '{0}': give its column under `signals:` of the series."
 
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual.limits import NOISE, READING, WINDOW
 from tracewire.residual.local_quartics import LocalQuartics, rows_around
 
-Vector = NDArray[np.float64]
 MAD = 1.4826
 """The standard deviation of normal numbers over their median absolute value."""
 INTERPOLATED = {1: 1, 2: 1, 4: 3}

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks, usual_range
 from tracewire.diagram import Channel, Series
@@ -18,8 +18,6 @@ from tracewire.residual.endings import alike, endings
 from tracewire.residual.inputs import line_error, looks_held, spline_if_smooth
 from tracewire.residual.limits import INPUT, REMARK
 from tracewire.residual.noise_estimate import noise_of_signal
-
-Vector = NDArray[np.float64]
 
 
 def check_quantities(model: Model, series: Series, record: Record) -> None:

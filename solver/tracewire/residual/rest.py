@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import FormulaError
 from tracewire.formula import Expression, evaluate, evaluate_along, names_of
 from tracewire.residual.limits import WINDOW
 from tracewire.solve import Driving, Held, values_at
-
-Vector = NDArray[np.float64]
 
 
 def states_at_rest(

@@ -10,11 +10,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.formula import Name
 from tracewire.residual.measured import Measured
 
-Vector = NDArray[np.float64]
 OWN = "@"
 """Stands between a parameter and the series that has it of its own: `harmonic.phase@run_1`."""
 

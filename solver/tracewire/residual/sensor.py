@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.diagram import Channel, Value
 from tracewire.formula import CONSTANTS, evaluate, names_of
 from tracewire.library import SENSOR_TERMS
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual.limits import SPECTRUM
 
-Vector = NDArray[np.float64]
 QUARTILE = -0.6745
 """Of normal numbers."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Name, evaluate
@@ -13,7 +14,6 @@ from tracewire.residual.measured import Measured
 from tracewire.residual.segment import Segment
 from tracewire.solve import parameter_values
 
-Vector = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 

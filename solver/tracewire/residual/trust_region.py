@@ -7,13 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.residual.criterion import half_square
 from tracewire.residual.limits import DESCENT
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 class LeastSquaresProblem(Protocol):

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.residual.criterion import Criterion
 from tracewire.residual.limits import WINDOW
@@ -24,9 +24,6 @@ from tracewire.residual.rest import states_along_inputs
 from tracewire.residual.segment import Segment
 from tracewire.residual.starts import start_from_data, whole_segment
 from tracewire.solve import parameter_values
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

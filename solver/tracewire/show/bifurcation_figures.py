@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse import Bifurcation, Branch, PoincareSection
+from tracewire.array_types import Array
 from tracewire.errors import OptionError, Problem
 from tracewire.show.limits import FIGURE
 from tracewire.show.plane_figures import check_names, square
@@ -18,7 +18,6 @@ from tracewire.show.style import LINES, QUIET, panels, save, styled, with_unit
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Array = NDArray[np.float64]
 BAND = "#F6E7D8"
 ARROWS = {"up": "values going up →", "down": "← values going down", "apart": "each from the start"}
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Comparison
 from tracewire.show.limits import FIGURE, FIT, WORD
@@ -38,8 +39,6 @@ if TYPE_CHECKING:
 
 
 ENLARGED = "the residual after, enlarged"
-
-Vector = NDArray[np.float64]
 
 
 def plot_comparisons(path: str | Path, comparisons: Sequence[Comparison], title: str = "") -> Path:

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.fit import Diagnosis, Fit, Profile, diagnose
 from tracewire.fit.limits import DIAGNOSIS
@@ -35,9 +35,6 @@ from tracewire.show.style import (
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-Vector = NDArray[np.float64]
 
 
 def plot_diagnostics(fit: Fit, path: str | Path, found: Sequence[Diagnosis] | None = None) -> Path:

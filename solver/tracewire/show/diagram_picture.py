@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.diagram import Diagram, find_signal, split_index
 from tracewire.draw import Drawing, Needed, draw
 from tracewire.show.document import Figure
@@ -20,8 +21,6 @@ MEASURED = "blue names are measured"
 ADDED = "green is what the trace added"
 LACKING = "amber is where something is missing that no effect explains"
 NEEDED = "the plot below a sum is what the data need there"
-
-Vector = NDArray[np.float64]
 
 
 def diagram_figure(diagram: Diagram) -> Figure:

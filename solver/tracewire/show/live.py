@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit import Comparison
 from tracewire.fit.optimset import OptimValues
 from tracewire.show.comparison_figures import draw_comparison
@@ -20,9 +20,6 @@ from tracewire.show.style import AFTER, QUIET, STYLE, align_ylabels, save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-
-Vector = NDArray[np.float64]
 
 
 class LivePlot(ABC):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.analyse import PeriodicOrbit
+from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import held_intervals
@@ -19,8 +20,6 @@ from tracewire.solve import Run
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-Vector = NDArray[np.float64]
 
 
 def plot_portrait(run: Run, x: str, y: str, path: str | Path, since: float = -np.inf) -> Path:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.diagram import ScenePart
 from tracewire.errors import FormulaError, OptionError, Problem
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
-Vector = NDArray[np.float64]
 Points = NDArray[np.float64]
 
 COLORS = {

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit import Comparison
 from tracewire.show.comparison_figures import plot_comparisons
 from tracewire.show.limits import TRACE
@@ -34,8 +34,6 @@ from tracewire.trace import CandidateScore, Curve, Found, users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Vector = NDArray[np.float64]
 
 
 def plot_residuals(found: Found, path: Path) -> Path:

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.show.limits import MAP
 from tracewire.show.style import (
     AFTER,
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-Matrix = NDArray[np.float64]
 SHARES, ALIKE, SEPARATION = "Blues", "Purples", "cividis"
 SLANTED: dict[str, Any] = {"rotation": 35, "ha": "right", "rotation_mode": "anchor"}
 

@@ -10,8 +10,8 @@ import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.show.limits import FIGURE
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-Vector = NDArray[np.float64]
 
 TIME = "t [s]"
 WHOLE, ACROSS, ALONG = "points", "across", "along"

@@ -8,15 +8,13 @@ from dataclasses import replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays
 from tracewire.solve.core.codes import EVENTS, LOG_HEAD, LOGGED
 from tracewire.solve.run import Event, EventDirection, EventKind
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 UNASKED = [EVENTS.index("crossing"), EVENTS.index("scheduled")]  # a reset is logged as such
 
 

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import OF_THE_PAST, Model
 from tracewire.errors import Location, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Flow, Progress
@@ -31,8 +31,6 @@ from tracewire.solve.core.codes import (
 )
 from tracewire.solve.core.methods import ROSENBROCK
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 HYSTERESIS = "A guard reads what its own mode changes: use hysteresis or a block with memory."
 
 

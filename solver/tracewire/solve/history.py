@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.compile import Model
 from tracewire.errors import Location, OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import FIRST, Arrays, History, Sensitivity
@@ -19,7 +20,6 @@ from tracewire.solve.held import Driving, Held, values_at
 from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 
-Matrix = NDArray[np.float64]
 Ints = NDArray[np.int64]
 FIRST_PIECES = 3 * ROOM
 GROWING = ("points", "ranks", "shifts", "pieces", "moves")

@@ -6,8 +6,8 @@ import math
 import time
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError
 from tracewire.solve.core.arrays import Arrays, Progress
@@ -51,9 +51,6 @@ from tracewire.solve.sensitivities import recorded, undefined
 from tracewire.solve.setup import Records
 from tracewire.solve.tables import unknown_parts
 from tracewire.solve.workspace import Workspace, acquire, give_back
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def first_budget(model: Model) -> int:

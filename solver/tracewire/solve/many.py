@@ -10,7 +10,7 @@ from concurrent.futures import Executor
 from typing import Any, Unpack
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracewire.arguments import checked
 from tracewire.compile import Model
@@ -22,10 +22,6 @@ from tracewire.solve.parallel import carry_out
 from tracewire.solve.progress import PartProgress, ProgressCallback
 from tracewire.solve.runs import Runs
 from tracewire.solve.task import Outcome, Row, Task
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Cube = NDArray[np.float64]
 
 
 @checked

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.formula import CONSTANTS, evaluate, names_of, parse
@@ -16,8 +17,6 @@ from tracewire.solve.core.codes import LOG_HEAD
 from tracewire.solve.limits import SAMPLE
 from tracewire.solve.run import Run
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Direction = Literal["up", "down", "both"]
 
 

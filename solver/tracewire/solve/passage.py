@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.ctypeslib import as_ctypes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.solve.core.arrays import Arrays
@@ -37,9 +38,6 @@ from tracewire.solve.limits import STEP
 from tracewire.solve.options import START
 from tracewire.solve.problem import initial_value_problem, start_of
 from tracewire.solve.workspace import set_to
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 class Passage:

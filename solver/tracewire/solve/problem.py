@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.arguments import checked
+from tracewire.array_types import Vector
 from tracewire.compile import OF_THE_PAST, Model
 from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.options import options_of
@@ -23,8 +23,6 @@ from tracewire.solve.sampling import check_times, samples_of, span_of, timing_fo
 from tracewire.solve.sensitivities import Moving, check_sensitivities, moving_with
 from tracewire.solve.tables import pack_tables, tables_follow, tables_of
 from tracewire.solve.tolerance import Tolerance, longest_step, place_of_step, tolerance_of
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, Literal, overload
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Cube, Vector
 from tracewire.compile import Model
 from tracewire.diagram import Shown, row_ends
 from tracewire.errors import OptionError, Problem, unknown
@@ -19,8 +19,6 @@ from tracewire.files import replacing, write_rows
 from tracewire.formula import quantity_hint, read_unit, same_quantity
 from tracewire.result import Result
 
-Vector = NDArray[np.float64]
-Cube = NDArray[np.float64]
 EventKind = Literal[
     "crossing", "scheduled", "reset", "impact", "stick", "slip", "rest", "transition"
 ]

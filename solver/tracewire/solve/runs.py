@@ -8,12 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Cube, Matrix, Vector
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.result import Result
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-Cube = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -7,15 +7,15 @@ from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import Location, OptionError, Problem
 from tracewire.formula import evaluate, names_of
 from tracewire.solve.limits import MEMORY, SAMPLE
 from tracewire.solve.once_per_model import once_per_model
 
-Vector = NDArray[np.float64]
 DEFAULT_SAMPLES = 1001
 
 

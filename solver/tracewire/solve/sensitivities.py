@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.compile import Model
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Expression, Name, evaluate, names_of
@@ -20,8 +21,6 @@ from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.options import START
 from tracewire.solve.run import Sensitivities
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 WEIGHTS = ((1.0, 3 / 4), (2.0, -3 / 20), (3.0, 1 / 60))
 SAID = {
     ZENO: "takes the impacts of {guard} up to its rest for all there are: they are without end",

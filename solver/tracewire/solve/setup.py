@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import (
     Arrays,
@@ -39,7 +40,6 @@ from tracewire.solve.limits import MEMORY
 from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.sensitivities import new_sensitivity
 
-Vector = NDArray[np.float64]
 Records = Literal["signals", "states", "both"]
 """What a sample has: the recorded signals, the states, or the states behind the signals."""
 

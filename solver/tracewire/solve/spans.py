@@ -15,6 +15,7 @@ from typing import NamedTuple, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, SimulationError, unknown
 from tracewire.solve.core.arrays import Arrays, Spans
@@ -31,9 +32,6 @@ from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.run import Sensitivities
 from tracewire.solve.sensitivities import recorded
 from tracewire.solve.workspace import least_peak
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.formula import evaluate, names_of
 from tracewire.solve.held import Held
 from tracewire.solve.once_per_model import once_per_model
 
-Vector = NDArray[np.float64]
 Inputs = Mapping[str, tuple[ArrayLike, ArrayLike]]
 Table = tuple[Vector, Vector]
 

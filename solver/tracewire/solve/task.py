@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, TracewireError
 from tracewire.formula import names_of
@@ -28,8 +29,6 @@ from tracewire.solve.options import Options, with_row
 from tracewire.solve.problem import InitialValueProblem, initial_value_problem
 from tracewire.solve.setup import Records
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Row = Mapping[str, float]
 
 

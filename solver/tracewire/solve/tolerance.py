@@ -7,16 +7,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import Location, OptionError, Problem, unknown
 from tracewire.formula import evaluate
 from tracewire.solve.core.codes import ABSOLUTE
 from tracewire.solve.core.methods import STEPPED
 from tracewire.solve.limits import STEP, Limits
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from typing import Any
 from weakref import ref
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.solve.core.arrays import Arrays, Spans, table_of
 from tracewire.solve.core.codes import END, FIXED, LENGTH, LONGEST, METHOD, RTOL, H, T
@@ -23,8 +23,6 @@ from tracewire.solve.options import START
 from tracewire.solve.problem import InitialValueProblem
 from tracewire.solve.setup import Kind, Records, new_arrays, new_spans
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 ONLY_WRITTEN = (
     *("address", "c", "k", "weights", "log", "stiff", "times"),
     *("change", "between", "right", "parts", "system", "steps"),  # of sensitivities

@@ -7,16 +7,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tracewire.array_types import Matrix, Vector
 from tracewire.diagram import Diagram, difference
 from tracewire.errors import OptionError, unknown
 from tracewire.result import Result, plain
 from tracewire.trace.options import TraceOptions
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Verdict = Literal["null", "effect", "unexplained"]
 RunKind = Literal["windowed", "free run"]
 IN_JSON = (

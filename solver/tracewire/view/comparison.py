@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.compile import Model
 from tracewire.solve import Limits
@@ -19,8 +18,6 @@ from tracewire.view.limits import VIEW
 
 if TYPE_CHECKING:
     from tracewire.residual import Measured, Segment
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

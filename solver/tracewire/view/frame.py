@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.errors import TracewireError
 from tracewire.show import Moved, extent_of, group_signals, held_intervals, jump_times, moved_parts
 from tracewire.solve import Run
 from tracewire.view.limits import VIEW
-
-Vector = NDArray[np.float64]
 
 
 class Arrays:

@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.quantities.subject import Subject
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.diagram import element_name, find_recorded, is_quantity
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
@@ -29,7 +29,6 @@ from tracewire.formula import (
     to_text,
 )
 
-Vector = NDArray[np.float64]
 Value = Any
 """A number, a word, or values (N,) at samples or events."""
 Further = Mapping[str, Callable[..., float]]

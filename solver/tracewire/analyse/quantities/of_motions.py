@@ -6,16 +6,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from tracewire.analyse.limits import QUANTITY
 from tracewire.analyse.quantities.evaluate import At, Value, full_name
+from tracewire.array_types import Complexes, Vector
 from tracewire.errors import AnalysisError, Problem
 from tracewire.formula import Call, Name, to_text
 
-Vector = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 SEED = 0
 
 

@@ -21,12 +21,11 @@ from tracewire.analyse.quantities.evaluate import (
 from tracewire.analyse.signal import floor_of
 from tracewire.analyse.spectra import spectrum
 from tracewire.analyse.waves import rises
+from tracewire.array_types import Vector
 from tracewire.diagram import EVENT_KINDS, is_quantity
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.formula import CONSTANTS, Call, Expression, is_condition, names_of, to_text
 from tracewire.solve import Event, Run
-
-Vector = NDArray[np.float64]
 
 
 def of_signal(reduce: Callable[[Vector, Vector], float]) -> Callable[[At, Call], Value]:

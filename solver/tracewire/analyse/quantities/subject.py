@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.analyse.bifurcation_diagram import Bifurcation, bifurcation
 from tracewire.analyse.floquet_multipliers import Floquet, floquet
@@ -20,12 +19,11 @@ from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.poincare_section import PoincareSection, section
 from tracewire.analyse.quantities.conditions import Conditions
 from tracewire.analyse.steady_states import SteadyState, steady_state
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import AnalysisError, OptionError, Problem
 from tracewire.fit import Fit, fit
 from tracewire.solve import Run, parameter_values, sample_times, simulate
-
-Vector = NDArray[np.float64]
 
 
 class Recorder:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.errors import FitError, Problem
 from tracewire.fit.limits import SEGMENTS, TRACKING
 from tracewire.fit.methods.tracking import count_tracked, spread_of
@@ -21,9 +21,6 @@ from tracewire.residual import (
     start_from_data,
 )
 from tracewire.solve import parameter_values
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

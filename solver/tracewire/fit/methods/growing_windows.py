@@ -11,13 +11,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.fit.limits import GROWING, TRACKING
 from tracewire.fit.methods.tracking import count_tracked, spread_of
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import Criterion, half_square, solve_least_squares
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Counts = NDArray[np.intp]
 
 

@@ -8,14 +8,13 @@ while the parameters are found (H. G. Bock, 1983; E. Baake et al., Phys. Rev. A 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit.limits import SEGMENTS
 from tracewire.fit.methods.chain import Chain
 from tracewire.fit.search import MethodResult, Search, Stopped
 from tracewire.residual import solve_least_squares
 
-Vector = NDArray[np.float64]
 WEIGHTS = tuple(10.0**k for k in range(-1, 7))
 """Of the gaps in the criterion, as a part of what the data spread, one stage after the other."""
 

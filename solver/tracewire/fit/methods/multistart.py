@@ -6,16 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.fit.limits import MULTISTART
 from tracewire.fit.methods.parallel import evaluate_parallel
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def by_multistart(search: Search) -> MethodResult:

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tracewire.array_types import Vector
 from tracewire.fit.search import Search
 from tracewire.residual import Criterion
 from tracewire.solve import cores
-
-Vector = NDArray[np.float64]
 
 
 def evaluate_parallel(search: Search, points: Sequence[Vector]) -> Iterator[float]:

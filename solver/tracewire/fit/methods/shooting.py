@@ -12,8 +12,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit.fminsearch import CONVERGED, fminsearch
 from tracewire.fit.limits import SHOOTING
 from tracewire.fit.methods.parallel import evaluate_parallel
@@ -21,7 +21,6 @@ from tracewire.fit.optimset import OptimValues, Options
 from tracewire.fit.search import MethodResult, Search
 from tracewire.residual import solve_least_squares
 
-Vector = NDArray[np.float64]
 KEPT = ("vertices", "values", "iteration", "procedure", "evaluations")
 
 

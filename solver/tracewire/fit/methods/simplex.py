@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit.fminsearch import fminsearch
 from tracewire.fit.optimset import OptimValues, OutputFunction
 from tracewire.fit.search import MethodResult, Search
-
-Vector = NDArray[np.float64]
 
 
 def by_simplex(search: Search) -> MethodResult:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.fit.limits import TRACKING
 from tracewire.residual import Segment, noise_level
-
-Vector = NDArray[np.float64]
 
 
 def count_tracked(off: Vector, spread: Vector) -> int:

@@ -7,13 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from tracewire.array_types import Vector
 from tracewire.residual import Measured
 from tracewire.trace.thresholds import CandidateOptions
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model, compile
 from tracewire.diagram import BlockUse, Diagram, InputPort, Value, Wire
 from tracewire.errors import FormulaError, TracewireError
@@ -22,7 +23,6 @@ from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.candidates.static_outputs import is_static, static_outputs
 from tracewire.trace.thresholds import CandidateOptions
 
-Vector = NDArray[np.float64]
 Samples = NDArray[np.intp]
 
 

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual import Windows
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import CandidateOptions
-
-Vector = NDArray[np.float64]
 
 
 def with_lines(

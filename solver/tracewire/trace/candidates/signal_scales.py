@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.thresholds import CandidateOptions
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

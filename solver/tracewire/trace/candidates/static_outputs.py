@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.diagram import Diagram
 from tracewire.errors import FormulaError
 from tracewire.formula import evaluate_along
@@ -15,8 +16,6 @@ from tracewire.library import Block
 from tracewire.trace.candidates.candidate import Candidate
 from tracewire.trace.candidates.signal_scales import Trajectory
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Samples = NDArray[np.intp]
 
 

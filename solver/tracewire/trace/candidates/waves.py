@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.errors import TracewireError
 from tracewire.residual import Windows
@@ -20,8 +21,6 @@ from tracewire.trace.candidates.static_outputs import static_outputs
 from tracewire.trace.limits import BATCH
 from tracewire.trace.thresholds import CandidateOptions
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Samples = NDArray[np.intp]
 Answer = Callable[[str, Sequence[Matrix]], Matrix]
 """What torques (N, k) by series at a place, by its name, do to the residuals, (M, k), without what

@@ -8,8 +8,8 @@ from functools import partial
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import DataError, FormulaError, Problem, TracewireError
 from tracewire.formula import Name, same_quantity, two_digits
@@ -17,8 +17,6 @@ from tracewire.residual import Measured, Section, channel_noise, cut_windows, wi
 from tracewire.solve import values_at, with_points
 from tracewire.trace.data_thresholds import CheckOptions
 from tracewire.trace.trials.trial import TraceProblem
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.residual import Measured
 from tracewire.trace.data_thresholds import CheckOptions
 
-Vector = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 BESIDE = np.array([-2, -1, 1, 2])
 """The samples through which a cubic is laid, by their numbers from the one between them."""

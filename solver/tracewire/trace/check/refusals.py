@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.errors import DataError, Problem
 from tracewire.formula import Name
 from tracewire.residual import Measured, noise_level
 from tracewire.trace.data_thresholds import CheckOptions
 
-Vector = NDArray[np.float64]
 FACTORS = {
     180 / np.pi: "degrees beside radians",
     1000.0: "a unit and its thousandth, such as m and mm or s and ms",

@@ -34,10 +34,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from tracewire.array_types import Array, Vector
 from tracewire.trace.options import TraceOptions
-
-Vector = NDArray[np.float64]
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Array, Vector
 from tracewire.errors import FitError
 from tracewire.residual import (
     DESCENT,
@@ -25,8 +26,6 @@ from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
-Vector = NDArray[np.float64]
-Array = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 

@@ -18,12 +18,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.residual import Section, Segment, cut_windows, edges_within
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.period import period_of
 
-Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
 REST = -1
 """The block of samples at rest, which is never left out."""

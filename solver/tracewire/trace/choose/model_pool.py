@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.residual import Segment, is_out_of_step
 from tracewire.trace.choose.choice import log_scores
@@ -23,7 +22,6 @@ from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.scanned_lengths import rescan_lengths
 from tracewire.trace.trials.trial import Trial, with_starts_of
 
-Array = NDArray[np.float64]
 Key = tuple[frozenset[str], tuple[str, ...]]
 
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.residual import Section
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.trial import Trial
-
-Vector = NDArray[np.float64]
 
 
 def describe_own_rhythm(search: Search, trial: Trial) -> str:

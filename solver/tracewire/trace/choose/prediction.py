@@ -6,8 +6,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Array
 from tracewire.trace.choose.choice import (
     Choice,
     Entrant,
@@ -27,8 +27,6 @@ from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import upper_shapes
 from tracewire.trace.trials.trial import Trial
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,10 +17,10 @@ from itertools import chain, zip_longest
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.trace.screen.screening import Proposal, Screen, ScreenRow
 from tracewire.trace.screen.shortlist import distinct
 
-Vector = NDArray[np.float64]
 Ints = NDArray[np.intp]
 
 

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from tracewire.array_types import Array
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.found import Explained, HeldOut, Remainder
-
-Array = NDArray[np.float64]
 
 
 def explained_share(prediction: Prediction, floors: Sequence[float]) -> tuple[Explained, float]:

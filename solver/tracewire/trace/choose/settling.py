@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.formula import two_digits
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.trial import Trial
 
-Vector = NDArray[np.float64]
 IN_THE_FILE = " of the series, in the time of its file (where `zero:` is t = 0)"
 
 

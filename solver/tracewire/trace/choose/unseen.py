@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.formula import two_digits
 from tracewire.residual import Section, restart_from_others
 from tracewire.trace.choose.choice import beats_declared, log_scores
@@ -15,8 +15,6 @@ from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.free_run import free_run
 from tracewire.trace.trials.trial import Trial
-
-Vector = NDArray[np.float64]
 
 
 def raises_unseen(search: Search, fewer: Trial, more: Trial, lengths: Sequence[int]) -> str:

@@ -6,11 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.trace.thresholds import ExperimentOptions
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.compile import Model, compile
 from tracewire.errors import OptionError, SimulationError
 from tracewire.residual import (
@@ -31,9 +31,6 @@ from tracewire.trace.experiment.rig import Design, Rig, rig_of
 from tracewire.trace.experiment.words import alias_hint, decision, none_within
 from tracewire.trace.found import Experiment
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def design_experiment(

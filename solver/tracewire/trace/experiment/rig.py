@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import Model
 from tracewire.formula import Name
 from tracewire.residual import Measured
@@ -18,9 +18,6 @@ from tracewire.trace.experiment.drives import Drive, drive_of, rates_of
 from tracewire.trace.screen.trajectories import simulate_signals
 from tracewire.trace.thresholds import ExperimentOptions
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

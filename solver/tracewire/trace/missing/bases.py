@@ -7,15 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.trace.candidates.drive_sines import fit_sine
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.candidates.signal_scales import Trajectory
 from tracewire.trace.thresholds import MapOptions
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Scale = Callable[[Vector], Vector]
 
 

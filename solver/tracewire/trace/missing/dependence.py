@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.residual import Projection, project_out_initial_states
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.found import Dependence, Missing
@@ -24,10 +25,6 @@ from tracewire.trace.screen.torque_linearisation import TorqueLinearisation, Win
 from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.statistics import orthonormal
 from tracewire.trace.trials.trial import Trial
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
-"""Residuals and columns that are worked on at once: fewer take longer, more take memory."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import compile
 from tracewire.diagram import effects_of
 from tracewire.residual import Windows
@@ -15,8 +15,6 @@ from tracewire.trace.screen.torques import missing_torques
 from tracewire.trace.screen.trajectories import join_windows, simulate_signals
 from tracewire.trace.thresholds import MapOptions
 from tracewire.trace.trials.trial import Trial
-
-Vector = NDArray[np.float64]
 
 
 def restoring_forces(

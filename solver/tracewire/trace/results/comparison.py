@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.solve import parameter_values
@@ -18,8 +18,6 @@ from tracewire.trace.search.search import Search
 from tracewire.trace.trials.bounds import at_bounds
 from tracewire.trace.trials.free_run import first_part, free_run
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix
 from tracewire.blas import one_blas_thread
 from tracewire.compile import Model
 from tracewire.diagram import Diagram, SetValues, patch
@@ -48,8 +48,6 @@ from tracewire.trace.search.search import Search, Step
 from tracewire.trace.trials.bounds import describe_bounds
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.trial import Trial
-
-Matrix = NDArray[np.float64]
 
 
 def result_of(

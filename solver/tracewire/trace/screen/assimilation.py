@@ -16,8 +16,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.diagram import Diagram, Value
 from tracewire.errors import FitError, SimulationError
 from tracewire.formula import Number
@@ -29,8 +29,6 @@ from tracewire.trace.screen.probes import add_probes
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.screen.torques import missing_torques
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
 
 
 def assimilate(

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.residual import Projection
 from tracewire.trace.limits import BATCH
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def project_out_starts(

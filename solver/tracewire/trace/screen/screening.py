@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.residual import Unknown, Windows, project_out_initial_states
 from tracewire.trace.candidates.candidate import PHASE, Candidate, is_default
 from tracewire.trace.candidates.effect_outputs import Variant, effect_outputs
@@ -28,8 +29,6 @@ from tracewire.trace.trials.statistics import (
 )
 from tracewire.trace.trials.trial import Trial
 
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 Ints = NDArray[np.intp]
 QUADRATURE = (0.0, math.pi / 2)
 

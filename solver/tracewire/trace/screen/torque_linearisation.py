@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.compile import compile
 from tracewire.diagram import Diagram
 from tracewire.library import SENSOR_TERMS
@@ -33,9 +34,6 @@ from tracewire.trace.screen.trajectories import (
     simulate_signals,
     simulate_windows,
 )
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

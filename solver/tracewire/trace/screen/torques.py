@@ -13,13 +13,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from tracewire.array_types import Vector
 from tracewire.trace.candidates.places import Place
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
-
-Vector = NDArray[np.float64]
 
 
 def missing_torques(

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.residual import LIMITS, Segment, Windows, absolute_tolerances, of_diagram
 from tracewire.solve import Span, SpanRuns, simulate_spans
 from tracewire.trace.candidates.signal_scales import Trajectory
 
-Vector = NDArray[np.float64]
 Signals = Mapping[str, Vector]
 
 

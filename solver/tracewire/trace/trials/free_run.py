@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from tracewire.array_types import Vector
 from tracewire.residual import Segment, evaluate_windows
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
 
 
 def free_run(problem: TraceProblem, trial: Trial, whole: Segment, shortest: int) -> Vector:

@@ -6,12 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracewire.residual import Segment, restart_from_others
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

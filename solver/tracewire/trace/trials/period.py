@@ -6,15 +6,13 @@ from collections.abc import Iterable
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.formula import Name
 from tracewire.residual import Measured, Section
 from tracewire.trace.data_thresholds import PeriodOptions
 from tracewire.trace.options import TraceOptions
-
-Vector = NDArray[np.float64]
 
 
 def passing_period(model: Model, signal: str, section: Section, options: TraceOptions) -> float:

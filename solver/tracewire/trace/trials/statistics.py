@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 from scipy.special import chdtrc
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.trace.limits import ROUNDING
 from tracewire.trace.thresholds import ScreenOptions
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def effective_fraction(residuals: Sequence[Vector]) -> float:

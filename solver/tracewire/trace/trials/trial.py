@@ -8,9 +8,9 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from tracewire.array_types import Vector
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, apply, patch
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
@@ -47,8 +47,6 @@ from tracewire.trace.trials.statistics import (
     flat_values,
     inverse_information,
 )
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
