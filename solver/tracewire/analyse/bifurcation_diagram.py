@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,20 +18,17 @@ from tracewire.analyse.partial import Partial, fingerprint
 from tracewire.analyse.plane import Plane, span_of
 from tracewire.analyse.poincare_section import extent_of, take_points
 from tracewire.analyse.turns import units_of
-from tracewire.analyse.work import interrupted
+from tracewire.analyse.work import work_through
 from tracewire.arguments import checked
 from tracewire.array_types import Cube, Matrix, Vector
 from tracewire.compile import Model
-from tracewire.errors import OptionError, Problem, TracewireError, unknown
+from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.result import Result
 from tracewire.solve import (
-    Interrupted,
-    PartProgress,
     Passage,
     ProgressCallback,
     StopFlag,
-    carry_out,
     parameter_values,
 )
 
@@ -264,8 +261,7 @@ def _carry_out(
 ) -> None:
     """Go through the chains side by side, through the values of each one after the other."""
     n, first = len(work.model.states), work.keep * len(work.model.states)
-    firsts: list[TracewireError] = []
-    coming: dict[int, list[tuple[int, float]]] = {}
+    rest: dict[int, Iterator[tuple[int, float]]] = {}
 
     def after(number: int, carried: Carried) -> Carried:
         """What a value carries to the next."""
@@ -274,43 +270,21 @@ def _carry_out(
         kept = store.rows[number]
         return float(kept[-1]), kept[first : first + n].copy()
 
-    def begun(rest: list[tuple[int, float]], carried: Carried) -> tuple[int, float, Carried] | None:
-        """The next value of a chain."""
-        if not rest:
-            return None
-        number, value = rest.pop(0)
-        coming[number] = rest
-        return number, value, carried
-
-    def take(
-        arguments: tuple[Any, ...], result: Vector | TracewireError
+    def next_of(
+        chain: Iterator[tuple[int, float]], carried: Carried
     ) -> tuple[int, float, Carried] | None:
-        number, _, carried = arguments
-        if isinstance(result, Interrupted):
-            return None
-        if isinstance(result, TracewireError):
-            firsts.append(result)
-            store.put(number, np.full(work.width, np.nan), str(result))
-        else:
-            store.put(number, result)
-        return begun(coming.pop(number), after(number, carried))
+        """The first value in the rest of a chain that is not done."""
+        for number, value in chain:
+            if not store.done[number]:
+                rest[number] = chain
+                return number, value, carried
+            carried = after(number, carried)
+        return None
 
-    tasks = []
-    for chain in chains:
-        carried: Carried = None
-        rest = list(chain)
-        while rest and store.done[rest[0][0]]:
-            carried = after(rest.pop(0)[0], carried)
-        task = begun(rest, carried)
-        tasks += [] if task is None else [task]
-    shown = PartProgress(progress, len(store.done), store.resumed)
-    try:
-        stopped = carry_out(
-            work.value, tasks, take, workers=workers, executor=executor, progress=shown
-        )
-    finally:
-        store.write()
-    if stopped:
-        raise interrupted(store)
-    if firsts and len(store.errors) == len(store.done):
-        raise firsts[0]
+    def follow(task: tuple[int, float, Carried]) -> tuple[int, float, Carried] | None:
+        number, _, carried = task
+        return next_of(rest.pop(number), after(number, carried))
+
+    firsts = [next_of(iter(chain), None) for chain in chains]
+    tasks = [task for task in firsts if task is not None]
+    work_through(work.value, store, workers, progress, executor, tasks=tasks, follow=follow)

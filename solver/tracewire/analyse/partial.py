@@ -33,7 +33,6 @@ class Partial:
         self.rows = np.full((count, width), np.nan)
         self.done = np.zeros(count, dtype=bool)
         self.errors: dict[int, str] = {}
-        self.resumed = 0
         self._file: ResumeFile | None = None
         if self.path is not None:
             _check(self.path)
@@ -75,7 +74,6 @@ class Partial:
             raise OptionError([Problem(what, place, hint="Delete it, or name another file.")])
         self.rows, self.done = rows, done
         self.errors = {int(number): text for number, text in content["errors"].items()}
-        self.resumed = int(done.sum())
 
 
 def fingerprint(model: Model) -> str:

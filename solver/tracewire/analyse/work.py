@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from tracewire.analyse.partial import Partial
 from tracewire.array_types import Vector
 from tracewire.errors import Problem, TracewireError
-from tracewire.solve import Interrupted, PartProgress, ProgressCallback, StopFlag, carry_out
+from tracewire.solve import Interrupted, PartProgress, ProgressCallback, carry_out
 
 
 @dataclass(frozen=True)
@@ -24,46 +24,52 @@ class IncompleteRow:
 
 
 def work_through(
-    point: Callable[[int, StopFlag], Vector | IncompleteRow],
+    point: Callable[..., Vector | IncompleteRow],
     partial: Partial,
-    workers: int | None = None,
-    progress: ProgressCallback | None = None,
-    executor: Executor | None = None,
+    workers: int | None,
+    progress: ProgressCallback | None,
+    executor: Executor | None,
+    *,
+    tasks: Sequence[tuple[Any, ...]] | None = None,
+    follow: Callable[[Any], tuple[Any, ...] | None] = lambda task: None,
 ) -> None:
-    """Make all rows of `partial` that are not done: point(number, stop_flag) gives one of them.
+    """Make the rows of `partial` that are not done: point(number, ..., stop_flag) gives one.
 
-    A point that raises a TracewireError fails for itself. Raises the error of the first point where
-    all fail, and Interrupted where the user stops the work; what is done is in the file then.
+    A task is the arguments of `point` before the stop flag; without `tasks` each row is one.
+    `follow` gives the task that goes on from one that has ended, or None. A point that raises a
+    TracewireError fails for itself. Raises the error of the first point where all fail, and
+    Interrupted where the user stops the work; what is done is in the file then.
     """
     missing = [(number,) for number in np.flatnonzero(~partial.done).tolist()]
     first: list[TracewireError] = []
 
-    def take(arguments: tuple[Any, ...], result: Vector | IncompleteRow | TracewireError) -> None:
-        (number,) = arguments
+    def take(
+        task: tuple[Any, ...], result: Vector | IncompleteRow | TracewireError
+    ) -> tuple[Any, ...] | None:
         if isinstance(result, Interrupted):
-            return
+            return None
         if isinstance(result, TracewireError):
             first.append(result)
-            partial.put(number, None, str(result))
+            partial.put(task[0], None, str(result))
         elif isinstance(result, IncompleteRow):
-            partial.put(number, result.row, result.error)
+            partial.put(task[0], result.row, result.error)
         else:
-            partial.put(number, result)
+            partial.put(task[0], result)
+        return follow(task)
 
+    tasks = missing if tasks is None else tasks
     shown = PartProgress(progress, len(partial.done), len(partial.done) - len(missing))
     try:
-        stopped = carry_out(
-            point, missing, take, workers=workers, executor=executor, progress=shown
-        )
+        stopped = carry_out(point, tasks, take, workers=workers, executor=executor, progress=shown)
     finally:
         partial.write()
     if stopped:
-        raise interrupted(partial)
+        raise _interrupted(partial)
     if first and len(partial.errors) == len(partial.done):
         raise first[0]
 
 
-def interrupted(partial: Partial) -> Interrupted:
+def _interrupted(partial: Partial) -> Interrupted:
     """The error of a sweep that the user stopped."""
     what = f"interrupted when {int(partial.done.sum())} of {len(partial.done)} points were done"
     kept = f"They are in '{partial.path}': the same command goes on from there."
