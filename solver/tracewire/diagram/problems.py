@@ -68,9 +68,12 @@ class Problems:
             self._note(problem)
 
     def raise_found(self, file: str) -> None:
-        """Raise what was noted, by line; the problems of `file` come before those of others."""
-        if not self.found:
-            return
+        """Raise what was noted, as `told` has it."""
+        if self.found:
+            raise DiagramError(self.told(file))
+
+    def told(self, file: str) -> tuple[Problem, ...]:
+        """What was noted, by line; the problems of `file` come before those of others."""
 
         def order(problem: Problem) -> tuple[bool, str, int, int]:
             place = problem.place
@@ -79,7 +82,7 @@ class Problems:
         told = _together(sorted(dict.fromkeys(self.found), key=order))
         if self.more:
             told.append(Problem(f"and {self.more} more problems", Location(file)))
-        raise DiagramError(told)
+        return tuple(told)
 
     def _note(self, problem: Problem) -> None:
         if not self.skips():

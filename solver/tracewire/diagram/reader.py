@@ -78,12 +78,10 @@ def read_text(
     file: the name for messages, and the place from which relative files are looked for.
     library: the blocks, where they are at hand already.
     """
-    problems = Problems()
     known = load_library(libraries) if library is None else library
-    diagram = _readable(text, file, known, problems)
-    problems.raise_found(str(file))
-    if diagram is None:
-        raise AssertionError("a diagram that cannot be read has problems")
+    diagram, problems = read_readable_text(text, file, known)
+    if problems:
+        raise DiagramError(problems)
     return diagram
 
 
@@ -106,26 +104,16 @@ def read_readable_text(
 
     Raises DiagramError where nothing can be read.
     """
-    problems = Problems()
-    diagram = _readable(text, file, library, problems)
+    problems, diagram = Problems(), None
     try:
-        problems.raise_found(str(file))
-    except DiagramError as error:
-        if diagram is None or not diagram.blocks:
-            raise
-        return diagram, tuple(error.problems)
-    assert diagram is not None
-    return diagram, ()
-
-
-def _readable(text: str, file: Path, library: Library, problems: Problems) -> Diagram | None:
-    """What can be read of a text; what is wrong with it is noted."""
-    try:
-        return _Reader(library, problems).top(text, file)
+        diagram = _Reader(library, problems).top(text, file)
     except DiagramError as error:  # the text cannot be read any further
         if error.problems is not problems.found:
             problems.take(error)
-        return None
+    found = problems.told(str(file))
+    if diagram is None or (found and not diagram.blocks):
+        raise DiagramError(found)
+    return diagram, found
 
 
 class _Reader:
