@@ -27,8 +27,7 @@ def side_by_side(name: str, entries: Entries) -> Entries:
     variants = variants_of(entries)
     bodies = {variant: with_variant(entries, variant, Problems()) for variant in variants}
     shared = _shared(bodies)
-    given = entries.values["variants"]
-    assert isinstance(given, Entries)
+    given = entries.inside("variants")
     keys: dict[str, Scalar] = {}
     lines: dict[str, Node] = {}
     for variant, body in bodies.items():

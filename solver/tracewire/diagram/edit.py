@@ -76,9 +76,8 @@ def difference(old: Diagram, new: Diagram) -> str:
 
 def _addends(use: BlockUse, inside: Diagram, blocks: Entries) -> tuple[str, Node]:
     """The input of a sum that takes several wires, and its node."""
-    port, line = many_port(use, inside), blocks.values[use.name]
-    assert isinstance(line, Entries)
-    return port, line.values[port]
+    port = many_port(use, inside)
+    return port, blocks.inside(use.name).values[port]
 
 
 def many_port(use: BlockUse, inside: Diagram) -> str:

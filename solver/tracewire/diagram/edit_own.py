@@ -54,11 +54,7 @@ def _add(diagram: Diagram, section: str, texts: Mapping[str, Mapping[str, str]])
     parts: dict[tuple[str, ...], str] = {}
     source_map = SourceMap(diagram)
     for series, own in texts.items():
-        node = source_map.root
-        for key in ("measured", series):
-            inner = node.values[key]
-            assert isinstance(inner, Entries)
-            node = inner
+        node = source_map.root.inside("measured", series)
         given = node.values.get(section)
         parts_of_series: tuple[Node, ...] = (node, *node.keys.values())
         if not all(map(source_map.is_own, parts_of_series)):

@@ -111,11 +111,8 @@ def _own(
     diagram: Diagram, root: Entries, parameter: str, series: str, value: float
 ) -> tuple[Node, str]:
     """The text of a parameter's value in one series, and what it becomes."""
-    known, node = own_value(diagram, parameter, series), root
-    for key in ("measured", series, "parameters"):
-        inner = node.values[key]
-        assert isinstance(inner, Entries)
-        node = inner
+    known = own_value(diagram, parameter, series)
+    node = root.inside("measured", series, "parameters")
     low, high = known.fit or (-math.inf, math.inf)
     number = digits(value / known.factor, low / known.factor, high / known.factor)
     return node.values[parameter], number
@@ -163,12 +160,8 @@ def factor_of(known: Value, kind: str, series: Series, signal: str) -> float:
 
 def _channel(diagram: Diagram, root: Entries, series: Series, signal: str) -> Node:
     """The text of a measured signal in its series."""
-    node: Node = root
-    for key in ("measured", series.name, "signals"):
-        assert isinstance(node, Entries)
-        node = node.values[key]
-    assert isinstance(node, Entries)
-    return next(n for name, _, n in node if find_recorded(diagram, name) == signal)
+    signals = root.inside("measured", series.name, "signals")
+    return next(n for name, _, n in signals if find_recorded(diagram, name) == signal)
 
 
 def _value_text(value: float, fit: tuple[float, float] | None, factor: float) -> str:

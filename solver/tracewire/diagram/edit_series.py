@@ -12,7 +12,7 @@ from tracewire.diagram.override import without_part
 from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewrite import reread
 from tracewire.diagram.source_map import SourceMap
-from tracewire.diagram.strict import Entries, Node, Scalar, compose
+from tracewire.diagram.strict import Entries, Scalar, compose
 from tracewire.diagram.text_edits import (
     TextEdit,
     apply_edits,
@@ -30,11 +30,7 @@ SECTION = "measured"
 def series_parts(diagram: Diagram, series: str, without: Collection[str] = ()) -> dict[str, str]:
     """The keys of a series in the text, each with its value on one line."""
     source_map = SourceMap(diagram)
-    node: Node = source_map.root
-    for key in (SECTION, series):
-        assert isinstance(node, Entries)
-        node = node.values[key]
-    assert isinstance(node, Entries)
+    node = source_map.root.inside(SECTION, series)
     parts = {key: inline(part) for key, _, part in node if key not in without}
     if "file" in parts and not source_map.is_own(node.values["file"]):
         parts["file"] = quote(path_text(diagram.measured[series].file, diagram.file.parent))
@@ -136,12 +132,9 @@ def _with_sections_of(edited: Diagram, original: Diagram) -> Diagram:
 def _moved(diagram: Diagram, root: Entries, target: Path) -> Diagram:
     """The diagram with the files of its series as seen from another file."""
     changes = []
-    measured = root.values[SECTION]
-    assert isinstance(measured, Entries)
-    for name, _, series in measured:
-        assert isinstance(series, Entries)
+    for name in root.inside(SECTION).keys:
         text = quote(path_text(diagram.measured[name].file, target.parent))
-        changes.append(replace_node(series.values["file"], text))
+        changes.append(replace_node(root.inside(SECTION, name).values["file"], text))
     return reread(diagram, changes)
 
 

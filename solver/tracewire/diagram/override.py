@@ -36,8 +36,8 @@ def localise(diagram: Diagram, source_map: SourceMap, nodes: Iterable[Node]) -> 
         _refuse_included(source_map, node)
     parts: dict[tuple[str, ...], str] = {}
     for node in foreign:
-        path = source_map.path(node)
-        parts[path] = inline(_at(source_map.root, path))
+        *around, name = path = source_map.path(node)
+        parts[path] = inline(source_map.root.inside(*around).values[name])
     return with_parts(diagram, parts)
 
 
@@ -78,14 +78,6 @@ def _with_part(text: str, root: Entries, path: tuple[str, ...], value: str) -> T
             return lines_last(text, [f"{name}: {value}"])
         return entry_last(text, node, quote(name), value)
     return lines_last(text, [f"{name}:", f"  {quote(deeper[0])}: {value}"])
-
-
-def _at(root: Entries, path: tuple[str, ...]) -> Node:
-    node: Node = root
-    for name in path:
-        assert isinstance(node, Entries)
-        node = node.values[name]
-    return node
 
 
 def _refuse_included(source_map: SourceMap, node: Node) -> None:

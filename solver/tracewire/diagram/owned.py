@@ -44,9 +44,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     name = _free(diagram, use.type)
     where = "" if inside is diagram else f"{inside.name}."
     _, blocks, _ = SourceMap(diagram).block(f"{where}{use.name}")
-    line = blocks.values[use.name]
-    assert isinstance(line, Entries)
-    kind = line.values["type"]
+    kind = blocks.inside(use.name).values["type"]
     if kind.place.file != str(diagram.file):
         what = f"the line of '{path}' stands in another file"
         raise OptionError.one(what, use.place, hint="Edit that file.")
@@ -54,9 +52,7 @@ def patch_own(diagram: Diagram, path: str, sum_path: str) -> tuple[Diagram, str]
     short = f"{{extends: {use.type}}}"
     with_base = reread(diagram, [_defined(diagram, name, short, [f"extends: {use.type}"]), typed])
     _, its_blocks, _ = SourceMap(with_base).block(f"{name}.{sum_name}")
-    sum_line = its_blocks.values[sum_name]
-    assert isinstance(sum_line, Entries)
-    wires = f"{sum_name}: {{of: {_listed(sum_line.values['of'])}}}"
+    wires = f"{sum_name}: {{of: {_listed(its_blocks.inside(sum_name).values['of'])}}}"
     short = f"{{extends: {use.type}, blocks: {{{wires}}}}}"
     lines = [f"extends: {use.type}", "blocks:", f"  {wires}"]
     return reread(diagram, [_defined(diagram, name, short, lines), typed]), f"{name}.{sum_name}"

@@ -87,8 +87,7 @@ def add_to_drive(
     else:
         changes = [entry_last(text, blocks, seen, line)]
     for use in readers:
-        entries = blocks.values[use.name]
-        assert isinstance(entries, Entries)
+        entries = blocks.inside(use.name)
         formulas = (key for key, given in use.settings.items() if _is_formula(given))
         for key in (*use.inputs, *formulas):
             changes += _tokens(diagram, entries.values[key], drive, seen)
@@ -140,8 +139,7 @@ def _own_readers(
 ) -> tuple[Diagram, Entries, Node | None]:
     """The diagram with the lines of these blocks in its own text, its blocks, and its events."""
     source_map = SourceMap(diagram)
-    blocks = source_map.root.values["blocks"]
-    assert isinstance(blocks, Entries)
+    blocks = source_map.root.inside("blocks")
     for event in events:
         if event.place.file != str(diagram.file):
             what = "an event that reads the drive stands in another file, which is extended"
@@ -150,9 +148,7 @@ def _own_readers(
     parts = [part for line in lines if isinstance(line, Entries) for part in line.values.values()]
     diagram = localise(diagram, source_map, parts)
     root = SourceMap(diagram).root
-    blocks = root.values["blocks"]
-    assert isinstance(blocks, Entries)
-    return diagram, blocks, root.values.get("events") if events else None
+    return diagram, root.inside("blocks"), root.values.get("events") if events else None
 
 
 def _acts_on_drive(diagram: Diagram, use: BlockUse) -> bool:

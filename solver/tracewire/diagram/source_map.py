@@ -71,7 +71,7 @@ class SourceMap:
                     body = with_variant(node, variant, Problems()) if variant else node
                     self.nodes[usual.place, variant] = body
                     self.bodies[inner].append((one, body))
-                    changes = _part(node, "variants", variant) if variant else None
+                    changes = node.inside("variants").values[variant] if variant else None
                     if isinstance(changes, Entries) and "remove" in changes.values:
                         self.removed[usual.place, variant] = changes.values["remove"]
                 if usual.variants:
@@ -114,12 +114,11 @@ class SourceMap:
         at = find_written(self.top, path, self.uses, self._bodies_with)
         entries = self._entries(at.body)
         if at.use is None:
-            return self._spot(at, _part(entries, "parameters", at.name))
-        line = _part(entries, "blocks", at.use.row or at.use.name)
-        assert isinstance(line, Entries)
+            return self._spot(at, entries.inside("parameters").values[at.name])
+        line = entries.inside("blocks", at.use.row or at.use.name)
         if at.is_shared:
             assert at.use.subsystem is not None
-            node = _part(self._entries(at.use.subsystem), "parameters", at.name)
+            node = self._entries(at.use.subsystem).inside("parameters").values[at.name]
             return self._spot(at, node, line)
         name, index = split_index(at.name) if at.use.subsystem is None else (at.name, ())
         node = line.values[name]
@@ -162,12 +161,6 @@ class SourceMap:
         if (diagram.place, diagram.variant) not in self.nodes:
             raise elsewhere(diagram)
         return self.nodes[diagram.place, diagram.variant]
-
-
-def _part(entries: Entries, section: str, name: str) -> Node:
-    node = entries.values[section]
-    assert isinstance(node, Entries)
-    return node.values[name]
 
 
 def _holder(inside: Node, key: Scalar) -> Entries | None:

@@ -81,6 +81,15 @@ class Entries:
     def __iter__(self) -> Iterator[tuple[str, Scalar, Node]]:
         return ((name, key, self.values[name]) for name, key in self.keys.items())
 
+    def inside(self, *names: str) -> Entries:
+        """The mapping to which these keys lead: they are there, as the text was read before."""
+        found: Node = self
+        for name in names:
+            assert isinstance(found, Entries)
+            found = found.values[name]
+        assert isinstance(found, Entries)
+        return found
+
 
 Node = Scalar | Items | Entries
 
