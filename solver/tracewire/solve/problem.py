@@ -12,7 +12,7 @@ import numpy as np
 from tracewire.arguments import checked
 from tracewire.array_types import Vector
 from tracewire.compile import OF_THE_PAST, Model
-from tracewire.errors import Location, OptionError, Problem, unknown
+from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.solve.core.methods import NAMES
 from tracewire.solve.history import Past, past_of
@@ -22,7 +22,7 @@ from tracewire.solve.parameters import parameter_values
 from tracewire.solve.sampling import check_times, samples_of, span_of, timing_follows
 from tracewire.solve.sensitivities import Moving, check_sensitivities, moving_with
 from tracewire.solve.tables import pack_tables, tables_follow, tables_of
-from tracewire.solve.tolerance import Tolerance, longest_step, place_of_step, tolerance_of
+from tracewire.solve.tolerance import Tolerance, longest_step, refuse_short_steps, tolerance_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,8 +158,7 @@ def pose(
     rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)
     shortest = min(longest, step or math.inf)
-    place = place_of_step(model, values, shortest)
-    _refuse_short_steps(end - begin, shortest, limits, place)
+    refuse_short_steps(model, values, end - begin, shortest, limits.steps)
     past = past_of(model, given.get("past") or {})
     return InitialValueProblem(
         model=model,
@@ -175,15 +174,6 @@ def pose(
         sampled=sampled,
         **_numbers(model, given, values, asked, past, tables),
     )
-
-
-def _refuse_short_steps(length: float, longest: float, limits: Limits, place: Location) -> None:
-    """Raises OptionError: a run that would take more steps than it may, however it goes."""
-    count = length / longest
-    if count > limits.steps:
-        what = f"{length:g} s in steps of at most {longest:g} s are {count:.2g} steps"
-        hint = f"A run takes at most {limits.steps:.2g}: take longer steps (step, max_step)."
-        raise OptionError.one(what, place, hint=hint)
 
 
 def start_of(model: Model, constants: Vector, tables: Vector, given: Mapping[str, float]) -> Vector:

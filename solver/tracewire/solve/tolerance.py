@@ -81,12 +81,24 @@ def longest_step(model: Model, values: Mapping[str, float], limits: Limits) -> f
         longest = min(longest, STEP.known_past * time)
     if not longest > 0:
         what = f"steps of {longest:g} s at most lead nowhere"
-        place = place_of_step(model, values, longest)
+        place = _place_of_step(model, values, longest)
         raise OptionError([Problem(what, place, hint="Give a max_step above 0.")])
     return longest
 
 
-def place_of_step(model: Model, values: Mapping[str, float], longest: float) -> Location:
+def refuse_short_steps(
+    model: Model, values: Mapping[str, float], length: float, longest: float, most: float
+) -> None:
+    """Raises OptionError: a run that would take more steps than it may, however it goes."""
+    count = length / longest
+    if count > most:
+        what = f"{length:g} s in steps of at most {longest:g} s are {count:.2g} steps"
+        place = _place_of_step(model, values, longest)
+        hint = f"A run takes at most {most:.2g}: take longer steps (step, max_step)."
+        raise OptionError.one(what, place, hint=hint)
+
+
+def _place_of_step(model: Model, values: Mapping[str, float], longest: float) -> Location:
     """Where the diagram sets the longest step to this one in s; nowhere if something else does."""
     given, written = model.flat.max_step, model.diagram.max_step
     if given is None or written is None or float(evaluate(given, values)) != longest:
