@@ -144,7 +144,7 @@ def is_sure(means: Means) -> NDArray[np.bool_]:
     return np.asarray(means.error <= TRACE.far * np.median(means.error))
 
 
-def binned(values: Vector, needed: Vector, bins: int = TRACE.bins) -> Means:
+def binned(values: Vector, needed: Vector) -> Means:
     """Middles of bins with equally many samples, the mean there and its standard error.
 
     What is needed has spikes where windows begin and end: the outermost twentieth on either side
@@ -152,7 +152,7 @@ def binned(values: Vector, needed: Vector, bins: int = TRACE.bins) -> Means:
     """
     known = np.isfinite(values) & np.isfinite(needed)
     order = np.argsort(values[known], kind="stable")
-    parts = np.array_split(order, min(bins, max(len(order) // TRACE.least_in_bin, 1)))
+    parts = np.array_split(order, min(TRACE.bins, max(len(order) // TRACE.least_in_bin, 1)))
     ends = np.quantile(needed[known], [TRACE.spikes, 1 - TRACE.spikes])
     x, y = values[known], np.clip(needed[known], *ends)
     middles = np.array([np.median(x[part]) for part in parts])

@@ -135,14 +135,12 @@ def moved_table(found: Found) -> Table:
     return Table("declared parameters", header, rows, frozenset({1, 2, 3, 4}))
 
 
-def tried_table(found: Found, screened: bool = True) -> Table:
-    """What was tried in each step, the best first; `screened`: also what was not refitted."""
+def tried_table(found: Found) -> Table:
+    """What was tried in each step, the best first, also what was not refitted."""
     rows = []
     for number, step in enumerate(found.steps, start=1):
-        if compares(step):
-            continue
-        refitted = [row for row in step.tried if math.isfinite(row.gain)]
-        rows += [_tried(str(number), row) for row in (step.tried if screened else refitted)]
+        if not compares(step):
+            rows += [_tried(str(number), row) for row in step.tried]
     header = ("step", "effect", "promised", "gain", "weight", "masked", "s2", "")
     return Table("what was tried", header, tuple(rows), frozenset({0, 2, 3, 4, 5, 6}))
 
@@ -178,9 +176,10 @@ def where_table(found: Found, most: int = WORD.report_rows) -> Table:
     return _depends(found, "where, and on what", found.dependences, most)
 
 
-def remainder_where_table(found: Found, most: int = WORD.report_rows) -> Table:
+def remainder_where_table(found: Found) -> Table:
     """On what the residual that is left depends, at which place, the best first."""
-    return _depends(found, "what is left: where, and on what", found.remainder_depends, most)
+    title = "what is left: where, and on what"
+    return _depends(found, title, found.remainder_depends, WORD.report_rows)
 
 
 def _depends(found: Found, title: str, dependences: Sequence[Dependence], most: int) -> Table:
