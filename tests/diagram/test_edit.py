@@ -7,15 +7,7 @@ import pytest
 from diagram.small_library import LIBRARY, PENDULUM, made
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tracewire.diagram import (
-    Diagram,
-    Value,
-    difference,
-    find_parameter,
-    read,
-    read_text,
-    write,
-)
+from tracewire.diagram import Diagram, Value, difference, find_parameter, read, read_text, write
 from tracewire.diagram.edit import add_addend
 from tracewire.diagram.edit_sensors import add_sensor, set_sensors
 from tracewire.diagram.edit_values import set_values

@@ -8,12 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tracewire.compile import compile
-from tracewire.diagram import (
-    Diagram,
-    difference,
-    read,
-    with_series_of,
-)
+from tracewire.diagram import Diagram, difference, read, with_series_of
 from tracewire.diagram import write as write_diagram
 from tracewire.diagram.edit_sensors import add_sensor
 from tracewire.diagram.edit_values import set_values

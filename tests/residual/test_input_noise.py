@@ -12,11 +12,7 @@ from residual.models import made
 from tracewire.compile import Model
 from tracewire.fit import diagnose, fit
 from tracewire.residual import Criterion, Measured, Sensor
-from tracewire.residual.input_noise import (
-    InputCovariance,
-    likely_input_noise,
-    response_in_windows,
-)
+from tracewire.residual.input_noise import InputCovariance, likely_input_noise, response_in_windows
 from tracewire.residual.input_response import InputResponse, input_response, states_in_windows
 from tracewire.residual.limits import INPUT
 from tracewire.residual.segment import Segment

@@ -34,15 +34,7 @@ from tracewire.show.trace_words import (
     unseen_errors,
     value_words,
 )
-from tracewire.trace.found import (
-    Dependence,
-    Explained,
-    FoundEffect,
-    HeldOut,
-    Power,
-    Remainder,
-    Tie,
-)
+from tracewire.trace.found import Dependence, Explained, FoundEffect, HeldOut, Power, Remainder, Tie
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.units import users_unit
 

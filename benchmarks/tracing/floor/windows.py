@@ -8,15 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.tracing.floor.fields import (
-    DRY,
-    FORCES,
-    LEVELS,
-    MASSES,
-    MEMORIES,
-    Now,
-    force_of,
-)
+from benchmarks.tracing.floor.fields import DRY, FORCES, LEVELS, MASSES, MEMORIES, Now, force_of
 from benchmarks.tracing.laws import Hidden
 
 Array = NDArray[np.float64]

@@ -25,12 +25,7 @@ from tracewire.compile import Model
 from tracewire.errors import OptionError, Problem, unknown
 from tracewire.options import options_of
 from tracewire.result import Result
-from tracewire.solve import (
-    Passage,
-    ProgressCallback,
-    StopFlag,
-    parameter_values,
-)
+from tracewire.solve import Passage, ProgressCallback, StopFlag, parameter_values
 
 Carried = tuple[float, Vector] | None
 """Time and states at the end of the value before."""

@@ -23,11 +23,7 @@ from tracewire.arguments import checked
 from tracewire.compile import Model, compile
 from tracewire.diagram import Diagram, Setting, Statement, read
 from tracewire.errors import TracewireError
-from tracewire.formula import (
-    CONSTANTS,
-    Expression,
-    names_of,
-)
+from tracewire.formula import CONSTANTS, Expression, names_of
 from tracewire.solve import Interrupted, Options
 
 Verdict = Literal["agrees", "the print is wrong", "does not agree", "could not be measured"]

@@ -16,14 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracewire.analyse.grid import grid_of
 from tracewire.analyse.partial import Partial, fingerprint
-from tracewire.analyse.quantities import (
-    Conditions,
-    Recorder,
-    Subject,
-    ask,
-    is_of_run,
-    measure,
-)
+from tracewire.analyse.quantities import Conditions, Recorder, Subject, ask, is_of_run, measure
 from tracewire.analyse.work import IncompleteRow, work_through
 from tracewire.arguments import checked
 from tracewire.array_types import Vector

@@ -8,14 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from tracewire.cli.output import (
-    Cut,
-    check_target,
-    flush,
-    print_json,
-    print_parts,
-    print_text,
-)
+from tracewire.cli.output import Cut, check_target, flush, print_json, print_parts, print_text
 from tracewire.cli.reporting import (
     Apply,
     Attempts,

@@ -6,13 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tracewire.cli.output import (
-    check_target,
-    print_json,
-    print_text,
-    telling,
-    working,
-)
+from tracewire.cli.output import check_target, print_json, print_text, telling, working
 from tracewire.files import writing
 
 if TYPE_CHECKING:

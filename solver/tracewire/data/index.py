@@ -12,13 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path, PurePosixPath
 
-from tracewire.data.made import (
-    balls_dropped,
-    bench_period,
-    motor_turn,
-    swing_large,
-    swing_small,
-)
+from tracewire.data.made import balls_dropped, bench_period, motor_turn, swing_large, swing_small
 
 RAW = "https://raw.githubusercontent.com"
 

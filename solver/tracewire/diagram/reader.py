@@ -10,13 +10,7 @@ from tracewire.arguments import checked
 from tracewire.diagram.body import Body
 from tracewire.diagram.check import check_names
 from tracewire.diagram.choose import NUMBER, with_number
-from tracewire.diagram.definitions import (
-    USUAL,
-    Choice,
-    Definition,
-    Definitions,
-    Scope,
-)
+from tracewire.diagram.definitions import USUAL, Choice, Definition, Definitions, Scope
 from tracewire.diagram.diagram import Diagram, Value
 from tracewire.diagram.files import load_text
 from tracewire.diagram.limits import LIMITS

@@ -13,12 +13,7 @@ import numpy as np
 
 from tracewire.residual.initial_states import fit_initial_states, refine_initial_states
 from tracewire.residual.limits import WINDOW
-from tracewire.residual.windows import (
-    Windows,
-    evaluate_windows,
-    keep_better,
-    with_initial_states,
-)
+from tracewire.residual.windows import Windows, evaluate_windows, keep_better, with_initial_states
 
 
 def is_out_of_step(windows: Windows, part: float, far: float = np.inf) -> bool:

@@ -12,16 +12,7 @@ from tracewire.errors import OptionError, Problem
 from tracewire.show.event_rows import draw_events, event_rows, jump_times
 from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import held_intervals
-from tracewire.show.style import (
-    LINES,
-    MARK,
-    dots,
-    fit_time,
-    panels,
-    save,
-    styled,
-    with_unit,
-)
+from tracewire.show.style import LINES, MARK, dots, fit_time, panels, save, styled, with_unit
 from tracewire.solve import Run
 
 if TYPE_CHECKING:

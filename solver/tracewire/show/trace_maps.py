@@ -25,15 +25,7 @@ from tracewire.show.style import (
 )
 from tracewire.show.trace_experiments import setting_unit
 from tracewire.show.trace_words import percent
-from tracewire.trace import (
-    Dependence,
-    Experiment,
-    Found,
-    Missing,
-    signal_of,
-    unit_at,
-    users_unit,
-)
+from tracewire.trace import Dependence, Experiment, Found, Missing, signal_of, unit_at, users_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,12 +10,7 @@ from tracewire.show.table import Table, shown
 from tracewire.show.trace_experiments import settings_words
 from tracewire.show.trace_steps import compares, own_gain
 from tracewire.show.trace_untried import common_powers
-from tracewire.show.trace_words import (
-    percent,
-    remainder_numbers,
-    stood_in,
-    to_its_interval,
-)
+from tracewire.show.trace_words import percent, remainder_numbers, stood_in, to_its_interval
 from tracewire.trace import (
     CandidateScore,
     Dependence,

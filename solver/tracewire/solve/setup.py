@@ -11,16 +11,7 @@ from numpy.typing import NDArray
 
 from tracewire.array_types import Vector
 from tracewire.compile import Model
-from tracewire.solve.core.arrays import (
-    Arrays,
-    Crossings,
-    Flow,
-    Plan,
-    Progress,
-    Spans,
-    Trial,
-    Watch,
-)
+from tracewire.solve.core.arrays import Arrays, Crossings, Flow, Plan, Progress, Spans, Trial, Watch
 from tracewire.solve.core.codes import (
     ALWAYS,
     CHATTER_EVENTS,

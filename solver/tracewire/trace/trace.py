@@ -27,11 +27,7 @@ from tracewire.trace.candidates.places import describe_no_sum, describe_untried,
 from tracewire.trace.check.option_checks import check_options
 from tracewire.trace.check.outliers import drop_outliers
 from tracewire.trace.check.refusals import check_series, remarks, without_still
-from tracewire.trace.choose.noisy_inputs import (
-    InputNoise,
-    describe_input_noise,
-    shown_input_noise,
-)
+from tracewire.trace.choose.noisy_inputs import InputNoise, describe_input_noise, shown_input_noise
 from tracewire.trace.choose.prediction import Prediction, predict
 from tracewire.trace.choose.safeguards import (
     fit_declared,

@@ -11,13 +11,7 @@ from scipy import special
 
 from tracewire.analyse.growth import growth_rate
 from tracewire.analyse.limits import QUANTITY
-from tracewire.analyse.quantities.evaluate import (
-    At,
-    Value,
-    full_name,
-    of_states,
-    other_of,
-)
+from tracewire.analyse.quantities.evaluate import At, Value, full_name, of_states, other_of
 from tracewire.analyse.signal import floor_of
 from tracewire.analyse.spectra import spectrum
 from tracewire.analyse.waves import rises

@@ -27,15 +27,7 @@ from tracewire.solve.core.arrays import (
     trial_of,
 )
 from tracewire.solve.core.codes import DELAY, DROPPED, LENGTH, MOVES, NODE, POINTS, RTOL, T
-from tracewire.solve.core.flow import (
-    DELAYED,
-    LAGS,
-    RESTING,
-    SLIDING,
-    blended,
-    evaluate,
-    held,
-)
+from tracewire.solve.core.flow import DELAYED, LAGS, RESTING, SLIDING, blended, evaluate, held
 from tracewire.solve.core.memory import ints_at
 from tracewire.solve.core.surface import pin
 from tracewire.solve.core.units import helper, unit

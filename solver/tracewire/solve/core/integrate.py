@@ -66,12 +66,7 @@ from tracewire.solve.core.history import (
     point_to_history,
 )
 from tracewire.solve.core.locate import AT_ONCE, LEAVES, NOTHING, TOO_LONG
-from tracewire.solve.core.methods import (
-    EXPONENT,
-    FIXED_STEP,
-    IMPLICIT,
-    SAFETY,
-)
+from tracewire.solve.core.methods import EXPONENT, FIXED_STEP, IMPLICIT, SAFETY
 from tracewire.solve.core.record import sample_end, sample_inside
 from tracewire.solve.core.saltation import begin_sensitivities
 from tracewire.solve.core.scheduled import happen_at_known_time

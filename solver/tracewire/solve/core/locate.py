@@ -35,12 +35,7 @@ from tracewire.solve.core.codes import (
     WATCHED,
     T,
 )
-from tracewire.solve.core.flow import (
-    FREE,
-    RESTING,
-    SLIDING,
-    held,
-)
+from tracewire.solve.core.flow import FREE, RESTING, SLIDING, held
 from tracewire.solve.core.modes import held_levels, jump_time, levels, piece
 from tracewire.solve.core.quiet import (
     EDGE,

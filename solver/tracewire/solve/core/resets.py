@@ -39,12 +39,7 @@ from tracewire.solve.core.codes import (
 from tracewire.solve.core.decide import first_higher
 from tracewire.solve.core.flow import FREE, RESTING, SLIDING
 from tracewire.solve.core.modes import JUMP, levels, margin, mode_value, rate_levels
-from tracewire.solve.core.readings import (
-    guard_rates,
-    guard_values,
-    guard_values_then,
-    reset_values,
-)
+from tracewire.solve.core.readings import guard_rates, guard_values, guard_values_then, reset_values
 from tracewire.solve.core.record import log
 from tracewire.solve.core.saltation import reset_sensitivities
 from tracewire.solve.core.units import helper, unit

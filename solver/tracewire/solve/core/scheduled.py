@@ -13,17 +13,7 @@ from tracewire.solve.core.arrays import (
     progress_of,
     watch_of,
 )
-from tracewire.solve.core.codes import (
-    CHANGES,
-    DELAY,
-    FINISHED,
-    GUARD,
-    SEGMENT,
-    TIME,
-    WAITS,
-    H,
-    T,
-)
+from tracewire.solve.core.codes import CHANGES, DELAY, FINISHED, GUARD, SEGMENT, TIME, WAITS, H, T
 from tracewire.solve.core.history import is_rough
 from tracewire.solve.core.modes import fires_reset
 from tracewire.solve.core.quiet import SAMPLES

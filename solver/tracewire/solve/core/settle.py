@@ -36,15 +36,7 @@ from tracewire.solve.core.decide import (
     first_higher,
     note_undetermined,
 )
-from tracewire.solve.core.flow import (
-    FREE,
-    GUARD_RATES,
-    RESTING,
-    SLIDING,
-    bind,
-    held,
-    patterns,
-)
+from tracewire.solve.core.flow import FREE, GUARD_RATES, RESTING, SLIDING, bind, held, patterns
 from tracewire.solve.core.modes import (
     JUMP,
     NOTHING,

@@ -44,12 +44,7 @@ from tracewire.solve.core.codes import (
     UP,
     WAITS,
 )
-from tracewire.solve.core.flow import (
-    FREE,
-    RESTING,
-    SLIDING,
-    bind,
-)
+from tracewire.solve.core.flow import FREE, RESTING, SLIDING, bind
 from tracewire.solve.core.history import is_delayed, mark_jumps
 from tracewire.solve.core.modes import JUMP, levels
 from tracewire.solve.core.readings import guard_rates, guard_values

@@ -22,11 +22,7 @@ from tracewire.trace.screen.projection import project_out, project_out_starts
 from tracewire.trace.screen.torque_linearisation import TorqueLinearisation
 from tracewire.trace.thresholds import ScreenOptions
 from tracewire.trace.trials.placed_effect import PlacedEffect
-from tracewire.trace.trials.statistics import (
-    BoundedColumns,
-    CandidateColumns,
-    orthonormal,
-)
+from tracewire.trace.trials.statistics import BoundedColumns, CandidateColumns, orthonormal
 from tracewire.trace.trials.trial import Trial
 
 Ints = NDArray[np.intp]
