@@ -6,15 +6,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import stdtrit
 
+from tracewire.array_types import Matrix, Vector
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.statistics import inverse_information
 from tracewire.trace.trials.trial import Trial
-
-Vector = NDArray[np.float64]
-Matrix = NDArray[np.float64]
 
 
 def reported_errors(trial: Trial, options: TraceOptions) -> dict[str, float]:
