@@ -74,7 +74,7 @@ def remainder_table(found: Found) -> Table:
 def ties_table(found: Found) -> Table:
     """What these data cannot tell from an effect, with how alike the two are on the data."""
     rows = tuple(
-        (str(effect), str(tie), f"{tie.likeness:.3f}",
+        (str(effect), str(tie), _number(tie.likeness, ".3f"),
          f"{len(tie.params) - len(effect.params):+d}" if tie.params else "",
          ", ".join(f"{name} = {value:.4g}" for name, value in tie.params.items()),
          _number(tie.rise, "+.3g"))

@@ -179,8 +179,15 @@ def test_effects_are_told_the_largest_first_and_not_the_surest() -> None:
         left[str(effect)] = alone.rss
     wanted = sorted(left, key=lambda name: -left[name])
     for effects in (best.effects, best.effects[::-1]):
-        assert names_of(largest_first(search, replace(best, effects=effects))) == wanted
-    assert largest_first(search, final.declared) is final.declared
+        ordered = largest_first(search, replace(final, best=replace(best, effects=effects)))
+        assert names_of(ordered.best) == wanted
+        bare = search.problem.fit([], best.windows.segments, best.length, best.values).rss
+        for name, share in ordered.shares.items():
+            assert share == pytest.approx((left[name] - best.rss) / (bare - best.rss), rel=0.1)
+    known = replace(final, shares={DRAG: 0.01})
+    assert largest_first(search, known).shares[DRAG] == 0.01
+    alone = FinalModels(final.declared, final.declared)
+    assert largest_first(search, alone) is alone
 
 
 def test_a_tiny_effect_that_is_surer_is_told_last(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -192,13 +199,17 @@ def test_a_tiny_effect_that_is_surer_is_told_last(monkeypatch: pytest.MonkeyPatc
     left = {"tiny": 1.1, "large": 100.0, "vital": None}
 
     def run(self: Any, now: Any, tasks: Any) -> list[Any]:
-        sizes = [left[next(iter({*left} - {str(e) for e in task}))] for task in tasks]
+        assert tasks[0] == []
+        left_out = [next(iter({*left} - {str(e) for e in task})) for task in tasks[1:]]
+        sizes = [200.0, *(left[name] for name in left_out)]
         return [None if rss is None else SimpleNamespace(rss=rss) for rss in sizes]
 
     refits = type(search.refits)
     monkeypatch.setattr(refits, "prepare", lambda self, now, effects, *_, **__: effects)
     monkeypatch.setattr(refits, "run", run)
-    assert names_of(largest_first(search, best)) == ["vital", "large", "tiny"]
+    ordered = largest_first(search, replace(final, best=best))
+    assert names_of(ordered.best) == ["vital", "large", "tiny"]
+    assert set(ordered.shares) == {"large", "tiny"}
 
 
 class Sized(SimpleNamespace):

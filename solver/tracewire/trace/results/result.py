@@ -55,9 +55,8 @@ def result_of(
 ) -> Found:
     """The result of a search."""
     search.tell("checking on what played no part")
-    final = judgement.final
-    best = final.best if interrupted else largest_first(search, final.best)
-    final = replace(final, best=with_unseen_phases(search, best))
+    final = judgement.final if interrupted else largest_first(search, judgement.final)
+    final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
     search.words += describe_bounds(declared, best)
     search.words += [w for w in describe_undetermined(best.windows) if w not in search.words]

@@ -39,7 +39,7 @@ class Rival:
 class FinalModels:
     """The declared model and the best one on the longest windows that they bear, the rivals of each
     effect by its name, the declared parameters that went to zero, and what each of several effects
-    takes away beside the others, as a part of the declared model's squared error."""
+    takes away beside the others, as a part of the squared error that was missing."""
 
     declared: Trial
     best: Trial
@@ -163,11 +163,12 @@ def _exchange_effect(
             quality, winner, chosen = bic, trial, added
     correlation = {str(added): value for added, value in known} | {str(effect): 1.0}
     if str(chosen) != str(effect):
+        search.words.append(f"refits on longer windows put {chosen} in the place of {effect}")
         correlation = {str(added): value for added, value in known_rivals(search, chosen)}
     found = [
         Rival(
             added,
-            correlation.get(str(added), 0.0),
+            correlation.get(str(added), np.nan),
             trial,
             delta_bic - quality,
             _is_tied(winner, trial, delta_bic - quality, options.search),
@@ -343,20 +344,29 @@ def _is_complete(search: Search, best: Trial) -> bool:
     return search.screen(best).p_value() > search.options.screen.chance
 
 
-def largest_first(search: Search, best: Trial) -> Trial:
-    """The best model with the effect first without which the squared error rises most, all others
-    and the free parameters refitted in a few steps on a few of its windows. A standard error tells
-    how sure a coefficient is, not how much its effect does: a tiny one may be the surest."""
+def largest_first(search: Search, final: FinalModels) -> FinalModels:
+    """The models with that effect first without which the squared error rises most, all others and
+    the free parameters refitted in a few steps on a few of the windows, and with the shares of
+    these rises where no comparison has told them. A standard error tells how sure a coefficient
+    is, not how much its effect does: a tiny one may be the surest."""
+    best = final.best
     if len(best.effects) < 2:
-        return best
-    segments = best.windows.segments
-    few = [segments[n] for n in few_of(segments, search.options.search.few)]
+        return final
+    few = few_of(best.windows.segments, search.options.search.few)
+    segments = [best.windows.segments[n] for n in few]
     steps = search.options.search.first_steps
     each = [[e for e in best.effects if e is not effect] for effect in best.effects]
-    tasks = [search.refits.prepare(best, others, few, steps=steps) for others in each]
-    left = [np.inf if t is None else t.rss for t in search.refits.run(best, tasks)]
+    tasks = [search.refits.prepare(best, some, segments, steps=steps) for some in ([], *each)]
+    bare, *left = [np.inf if t is None else t.rss for t in search.refits.run(best, tasks)]
+    least = sum(float(best.windows.squares[n]) for n in few)
+    shares = {
+        str(effect): max(rss - least, 0.0) / (bare - least)
+        for effect, rss in zip(best.effects, left, strict=True)
+        if least < bare < np.inf and rss < np.inf
+    }
     order = sorted(range(len(left)), key=lambda n: -left[n])
-    return replace(best, effects=tuple(best.effects[n] for n in order))
+    best = replace(best, effects=tuple(best.effects[n] for n in order))
+    return replace(final, best=best, shares={**shares, **final.shares})
 
 
 def _drop_terms(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
