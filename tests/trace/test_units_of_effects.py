@@ -8,8 +8,9 @@ import pytest
 from show.traces import FOUND
 from tracewire.compile import compile, unit_problems
 from tracewire.diagram import read_text
+from tracewire.show.trace_summary import meaning_words
 from tracewire.trace import FoundEffect
-from tracewire.trace.units import unit_at, unit_of, unit_of_effect
+from tracewire.trace.units import unit_at, unit_of, unit_of_effect, users_unit_of
 
 CART = """\
 blocks:
@@ -19,6 +20,7 @@ blocks:
   force: {type: sum, of: [spring], unit: N}
   a: {type: gain, of: force, k: 2}
 """
+(EFFECT,) = FOUND.effects
 CART_UNITS = {"x": "m", "v": "m/s", "force": "N"}
 PENDULUM = """\
 blocks:
@@ -152,3 +154,36 @@ ROPE_UNITS = {"theta": "rad", "omega": "rad/s", "speed": "m/s", "push": "m/s^2"}
 def test_a_rate_that_is_not_that_of_the_coordinate(effect: str, parameter: str, unit: str) -> None:
     found = replace(FOUND, original=read_text(ROPE), units=ROPE_UNITS)
     assert unit_of_effect(found, effect, "push", parameter) == unit
+
+
+def test_a_value_has_the_users_unit_of_what_it_is_compared_with() -> None:
+    """A gap in the unit of the coordinate, a level in that of the sum, a limit in the drive's."""
+    scales = {"x": ("mm", 1e-3), "u": ("mA", 1e-3), "v": ("m/s", 1.0), "force": ("kN", 1e3)}
+    found = replace(
+        FOUND, original=read_text(CART), units={**CART_UNITS, "u": "A"}, users_units=scales
+    )
+
+    def shown(name: str, place: str, parameter: str) -> tuple[str, float]:
+        return users_unit_of(found, replace(EFFECT, name=name, place=place), parameter)
+
+    assert shown("backlash", "force", "gap") == ("mm", 1e-3)
+    assert shown("coulomb", "force", "level") == ("kN", 1e3)
+    assert shown("stribeck", "force", "speed") == ("m/s", 1.0)
+    assert shown("viscous", "force", "c") == ("N s/m", 1.0)
+    drive = replace(found, units={**found.units, "drive_saturation.limit": "A"})
+    effect = replace(EFFECT, place="drive.u", block="drive_saturation")
+    assert users_unit_of(drive, effect, "limit") == ("mA", 1e-3)
+
+
+def test_an_effect_at_a_temperature_is_told_in_its_words() -> None:
+    wall = """\
+blocks:
+  T: {type: integrator, of: net, unit: K}
+  net: {type: sum, of: [T], unit: K/s}
+"""
+    units = {"T": "K", "net": "K/s"}
+    found = replace(FOUND, original=read_text(wall), diagram=read_text(wall), units=units)
+    drag = replace(EFFECT, name="quad_drag", place="net", block="quad_drag")
+    assert meaning_words(found, drag) == "'quad_drag': a loss in proportion to the square of T."
+    turning = replace(found, units={"T": "rad/s", "net": "rad/s^2"})
+    assert "as of a body in a turbulent fluid" in meaning_words(turning, drag)

@@ -50,9 +50,19 @@ def entry_after(
     if entries.flow:
         return TextEdit(end, end, f", {name}: {value}")
     indent = _indent(text, key)
-    width = node.start - key.start if node.place.line == key.place.line else 0
+    width = _width(key, node) if _is_aligned(entries) else 0
     behind = f"   # {comment}" if comment else ""
     return _line_after(text, end, f"{indent}{f'{name}:'.ljust(width - 1)} {value}{behind}")
+
+
+def _width(key: Scalar, node: Node) -> int:
+    """From the begin of a key to that of its value; 0 where this is on another line."""
+    return node.start - key.start if node.place.line == key.place.line else 0
+
+
+def _is_aligned(entries: Entries) -> bool:
+    """Whether the values of a mapping stand below each other: some key has blanks behind it."""
+    return any(_width(key, node) > len(f"{name}: ") for name, key, node in entries)
 
 
 def entry_last(text: str, entries: Entries, name: str, value: str) -> TextEdit:

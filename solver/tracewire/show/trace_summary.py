@@ -35,6 +35,9 @@ from tracewire.trace import (
     Tie,
     TraceOptions,
     coefficient_of,
+    is_first_order,
+    signal_of,
+    users_unit,
     users_unit_of_power,
 )
 
@@ -192,9 +195,9 @@ def noisy_words(found: Found) -> str:
     if found.effects or not found.noisy_inputs:
         return ""
     parts = [
-        f"noise of the input '{one.name}' of "
-        + f"{one.sigma:.2g} {found.units.get(one.name, '')}".rstrip()
+        f"noise of the input '{one.name}' of {one.sigma / factor:.2g} {unit}".rstrip()
         for one in found.noisy_inputs
+        for unit, factor in [users_unit(found, one.name)]
     ]
     return f"{' or '.join(parts)} would explain the residual"
 
@@ -276,11 +279,28 @@ def _effect(found: Found) -> list[str]:
     return [*parts, *_remains(found), sure, *_ties(found), *doubts, _moved(found)]
 
 
+AT_A_LEVEL = {
+    "bias": "a constant flow in or out",
+    "viscous": "a loss in proportion to {}",
+    "quad_drag": "a loss in proportion to the square of {}",
+    "cubic_damping": "a loss in proportion to the third power of {}",
+    "coulomb": "a loss that is the same for each {}",
+    "viscous_drift": "a loss in proportion to {} that grows with the time of the run",
+    "friction_drift": "a loss that grows with the time of the run, the same for each {}",
+}
+"""What effects mean where the state is no rate of a body, as a temperature or a pressure."""
+OF_BODIES = ("m/s", "rad/s", "")
+"""The units of rates; of what has no unit nothing is known."""
+
+
 def meaning_words(found: Found, effect: FoundEffect) -> str:
     """What an effect is, as its block says; '' for one of a sensor, whose name says it."""
     if effect.name not in found.diagram.library or effect.name in SENSORS:
         return ""
     doc = found.diagram.library[effect.name].doc.rstrip(".")
+    state = signal_of(found, effect.place, "v")
+    if is_first_order(found, effect.place) and found.units.get(state, "") not in OF_BODIES:
+        doc = AT_A_LEVEL.get(effect.name, doc).format(state)
     return f"'{effect.name}': {doc[:1].lower()}{doc[1:]}." if doc else ""
 
 

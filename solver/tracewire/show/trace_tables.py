@@ -220,6 +220,9 @@ def _in_sigma(value: float, sigma: float) -> str:
 
 
 def _change(before: float, after: float) -> str:
+    """The relative change; '' from or through zero, of which it tells nothing."""
+    if before * after < 0:
+        return ""
     change = after / before - 1 if before else math.nan
     if not abs(change) < 10:
         return ""

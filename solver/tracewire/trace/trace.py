@@ -81,7 +81,7 @@ def trace(
         noise = ended.input_noise
         try:
             again = set_up_search(subject, measured, rtol, tell_in_time, options, executor, noise)
-            again.note(describe_input_noise(noise, search.problem.declared.flat.units))
+            again.note(describe_input_noise(noise, search.problem.declared))
             search, ended = again, _run(again)
         except (KeyboardInterrupt, OutOfTime) as stopped:
             ended = _interrupted(search, stopped)

@@ -140,17 +140,30 @@ def unit_of_power(found: Found, power: Power) -> str:
 
 def users_unit_of(found: Found, effect: FoundEffect, name: str) -> tuple[str, float]:
     """The unit in which a user has a parameter of an effect, and its factor to SI: that of the
-    column for what a sensor does, else that of SI."""
+    column for what a sensor does, that of the drive, the sum, its coordinate or its rate where
+    this is of the same quantity, else that of SI."""
     if effect.block:
-        return unit_of(found, effect, name), 1.0
+        return _users_unit_at(found, effect.place, unit_of(found, effect, name))
     return _users_unit_of_sensor(found, effect.place, name)
 
 
 def users_unit_of_power(found: Found, power: Power) -> tuple[str, float]:
     """The same of the smallest coefficient."""
     if not power.name.startswith("sensor_"):
-        return unit_of_power(found, power), 1.0
+        return _users_unit_at(found, power.place, unit_of_power(found, power))
     return _users_unit_of_sensor(found, power.place, coefficient_of(power))
+
+
+def _users_unit_at(found: Found, place: str, unit: str) -> tuple[str, float]:
+    """The user's unit of what has an SI unit at a place."""
+    kind, _, drive = place.partition(".")
+    near = [drive] if kind == "drive" else [place, *(signal_of(found, place, x) for x in "qv")]
+    for signal in near:
+        if unit and found.units.get(signal) == unit:
+            users, factor = users_unit(found, signal)
+            if factor != 1.0:
+                return users, factor
+    return unit, 1.0
 
 
 def _users_unit_of_sensor(found: Found, place: str, term: str) -> tuple[str, float]:

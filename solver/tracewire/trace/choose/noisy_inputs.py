@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tracewire.compile import Model
 from tracewire.errors import FitError, SimulationError
 from tracewire.formula import two_digits
 from tracewire.residual import (
@@ -54,15 +55,16 @@ def shown_input_noise(search: Search) -> InputNoise:
     return {}
 
 
-def describe_input_noise(noise: InputNoise, units: Mapping[str, str]) -> str:
-    """In words, which noise of inputs counts in a search."""
+def describe_input_noise(noise: InputNoise, model: Model) -> str:
+    """In words, which noise of inputs of a model counts in a search."""
     largest: dict[str, float] = {}
     for by_input in noise.values():
         for name, level in by_input.items():
             largest[name] = max(level, largest.get(name, 0.0))
     parts = [
-        f"{two_digits(level)} {units.get(name, '')}".rstrip() + f" in '{name}'"
+        f"{two_digits(level / factor)} {unit}".rstrip() + f" in '{name}'"
         for name, level in largest.items()
+        for unit, factor in [model.users_unit(name)]
     ]
     return (
         f"noise that the inputs show from sample to sample counts: {' and '.join(parts)}. With"
