@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from tracewire.trace.results.comparison import (
     on_equal_windows,
     parameter_changes,
     rmse,
+    with_unseen_phases,
 )
 from tracewire.trace.trials.free_run import free_run
 from tracewire.trace.trials.trial import TraceProblem
@@ -122,3 +125,27 @@ def test_what_the_declared_parameters_did_is_told_with_units() -> None:
     (k, c) = parameter_changes(problem, declared, declared, {"k": 25.5})
     assert (k.name, k.unit, k.before, k.after) == ("k", "1/s^2", declared.values["k"], 25.5)
     assert (c.name, c.after) == ("c", 0.0), "what was dropped is zero"
+
+
+def test_a_phase_that_is_fitted_to_unseen_data_is_told() -> None:
+    class Wave(SimpleNamespace):
+        def __str__(self) -> str:
+            return "harmonic @ force"
+
+    before: Any
+    after: Any
+    before = Wave(own_series={"first", "second"})
+    after = Wave(own_series={"first", "second", "kept", "again"})
+    trial = replace(trial_of(problem_of(record(lambda x, v: 0.0))), effects=(before,))
+    search: Any = SimpleNamespace(
+        problem=SimpleNamespace(fit_unseen_phases=lambda trial, firsts: (after,)),
+        data_split=SimpleNamespace(unseen=()),
+        whole_windows=lambda sections: [],
+        options=TraceOptions(),
+        words=[],
+    )
+    assert with_unseen_phases(search, trial).effects == (after,)
+    assert search.words == [
+        "in 'again' and 'kept', which no fit saw, the phase of harmonic @ force is fitted to the "
+        "first 20 % alone"
+    ]

@@ -157,7 +157,8 @@ class Prediction:
                     float("nan"),
                     float(scores[0] - scores[n]) * self.horizons.count,
                     s2=model.trials[-1].reduced_chi2,
-                    remark=f"{model.numbers} numbers, {change:+.1%} error on held-out blocks",
+                    remark=f"{model.numbers} numbers, {change:+.1%} error on a typical held-out"
+                    " block",
                 )
             )
         longest = self.horizons.each[-1].length * self.horizons.interval

@@ -12,6 +12,7 @@ from tracewire.array_types import Vector
 from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.solve import parameter_values
+from tracewire.trace.choose.unseen import join_names
 from tracewire.trace.found import ChannelError, Curve, ParameterChange, RunKind
 from tracewire.trace.results.intervals import reported_errors
 from tracewire.trace.search.search import Search
@@ -115,7 +116,16 @@ def with_unseen_phases(search: Search, trial: Trial) -> Trial:
         first_part(whole, search.shortest, search.options.split.first_part)
         for whole in search.whole_windows(search.data_split.unseen)
     ]
-    return replace(trial, effects=search.problem.fit_unseen_phases(trial, firsts))
+    effects = search.problem.fit_unseen_phases(trial, firsts)
+    for before, effect in zip(trial.effects, effects, strict=True):
+        series = [f"'{name}'" for name in sorted(effect.own_series - before.own_series)]
+        if series:
+            part = f"{100 * search.options.split.first_part:.0f} %"
+            search.words.append(
+                f"in {join_names(series)}, which no fit saw, the phase of {effect} is fitted to the"
+                f" first {part} alone"
+            )
+    return replace(trial, effects=effects)
 
 
 def rmse(parts: Sequence[ModelComparison], which: int) -> float:
