@@ -232,6 +232,9 @@ def test_coarse_readings_and_rest_do_not_look_held() -> None:
     assert not looks_held(np.round(wave(T), 2))
     assert not looks_held(np.where(T > 4, wave(T), 0.0))
     assert not looks_held(np.full(100, 3.0))
+    winch = np.clip(np.abs(np.arange(200) % 100 - 50.0) - 30, 0, 4)  # it moves quickly, and rests
+    assert not looks_held(winch)
+    assert looks_held(np.round(winch / 4))
 
 
 def test_a_held_input_at_other_times_and_points() -> None:

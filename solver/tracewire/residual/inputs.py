@@ -41,6 +41,9 @@ def looks_held(u: Vector) -> bool:
     jumps = changes[changes > 0]
     if not len(jumps) or np.mean(changes == 0) < INPUT.repeated:
         return False
+    moves = changes > 0
+    if np.sum(moves[:-1] & moves[1:]) > INPUT.moving * np.sum(moves):  # it goes, and rests between
+        return False
     return bool(np.median(jumps) > INPUT.jump * np.ptp(u))
 
 

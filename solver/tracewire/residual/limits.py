@@ -111,6 +111,8 @@ class InputLimits:
     """The spread of time steps, in units of their mean, up to which samples are evenly spaced."""
     repeated: Final[float] = 0.5
     """The part of samples that repeat the one before, from which on an input looks held."""
+    moving: Final[float] = 0.5
+    """The part of changes that another one follows at once, up to which an input looks held."""
     jump: Final[float] = 0.02
     """The least median change beside the range of an input that looks held."""
     better: Final[float] = 0.3
