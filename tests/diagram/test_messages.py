@@ -283,6 +283,8 @@ def test_a_reserved_name_is_no_input_of_a_subsystem() -> None:
 
 def test_an_input_of_the_diagram_is_a_mapping_of_unit_and_default() -> None:
     assert "unknown key of an input 'units'" in refused("blocks: {}\ninputs: {a: {units: m}}")
+    said = refused("blocks: {}\ninputs: {a: {sigma: 0.1}}")
+    assert "It belongs to the record: measured: {run: {inputs: {...}}}." in said
     assert "input 'a' must be a mapping" in refused("blocks: {}\ninputs: {a: m}")
     told = refused("blocks: {}\ninputs: [a, a]")
     assert "two definitions of 'a': an input here, and an input in line 2" in told

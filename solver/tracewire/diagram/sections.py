@@ -6,7 +6,7 @@ from typing import get_args
 
 from tracewire.diagram.body import Body
 from tracewire.diagram.diagram import Crosses, Event, InputPort, Shown, Value, Wire
-from tracewire.diagram.grammar import EVENT, INPUT
+from tracewire.diagram.grammar import EVENT, INPUT, MEASURED_INPUT
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.diagram.values import NO_UNIT, read_formula, read_value
@@ -32,7 +32,9 @@ def read_inputs(node: Node, body: Body) -> dict[str, InputPort]:
         properties = body.entries(value, f"input '{clip(text)}'", "{unit: N m, default: 0}")
         unit, default, shown = NO_UNIT, None, Shown()
         if properties is not None:
-            body.check_keys(properties, INPUT, "key of an input")
+            measured = not (MEASURED_INPUT.keys() - INPUT.keys()).isdisjoint(properties.keys)
+            hint = "It belongs to the record: measured: {run: {inputs: {...}}}." if measured else ""
+            body.check_keys(properties, INPUT, "key of an input", hint=hint)
             _, shown = body.shown(properties)
             if "unit" in properties.values:
                 unit = body.unit(properties.values["unit"])
