@@ -46,6 +46,20 @@ def test_an_addend_is_two_lines() -> None:
     assert add_addend(old, "torque", "drag", f"drag: {DRAG}\n").text == new.text
 
 
+@pytest.mark.parametrize(("short", "blank"), [("a:", ""), ("a:    ", "    ")])
+def test_a_new_line_is_aligned_where_others_are(short: str, blank: str) -> None:
+    text = f"""
+blocks:
+  {short} {{type: expression, formula: 1}}
+  total: {{type: sum, of: [a]}}
+"""
+    new = add_addend(
+        read_text(text, library=LIBRARY), "total", "b", "{type: expression, formula: 2}"
+    )
+    _, come = changes(read_text(text, library=LIBRARY), new)
+    assert f"  b:{blank} {{type: expression, formula: 2}}" in come
+
+
 def test_an_addend_of_a_list_of_lines_inside_a_subsystem() -> None:
     old = made(PENDULUM)
     line = "{type: viscous, rate: rate, c: 0}"
