@@ -360,7 +360,7 @@ def largest_first(search: Search, final: FinalModels) -> FinalModels:
     bare, *left = [np.inf if t is None else t.rss for t in search.refits.run(best, tasks)]
     least = sum(float(best.windows.squares[n]) for n in few)
     shares = {
-        str(effect): max(rss - least, 0.0) / (bare - least)
+        str(effect): float(np.clip((rss - least) / (bare - least), 0.0, 1.0))
         for effect, rss in zip(best.effects, left, strict=True)
         if least < bare < np.inf and rss < np.inf
     }
