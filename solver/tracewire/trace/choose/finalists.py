@@ -108,13 +108,11 @@ def _fit_horizons(pool: ModelPool, trial: Trial) -> Finalist | None:
     trials: list[Trial] = []
     pool.search.tell(f"refitting with {' and '.join(sorted(map(str, trial.effects)))}")
     for horizon in pool.horizons.each:
-        try:
-            target = pool.target(horizon.length, len(trial.effects))
-            before = trial
-            trial = pool.search.problem.refit(before, horizon.segments, horizon.length, target)
-            trial = pool.in_step(before, trial, horizon)
-        except FitError:
+        target = pool.target(horizon.length, len(trial.effects))
+        fitted = pool.search.problem.try_refit(trial, horizon.segments, horizon.length, target)
+        if fitted is None:
             return None
+        trial = pool.in_step(trial, fitted, horizon)
         pool.spent += trial.windows.criterion.steps
         trials.append(trial)
     return Finalist(tuple(trials))

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.array_types import Array, Vector
-from tracewire.errors import FitError
 from tracewire.residual import (
     DESCENT,
     bounded_step,
@@ -136,11 +135,7 @@ def errors_held_out(
 
 def _gate_errors(problem: TraceProblem, trial: Trial, horizon: Horizon, count: int) -> Array:
     """The mean squared residual of blocks of series that no fit sees, (blocks, channels)."""
-    try:
-        windows = problem.windows_on(trial, horizon.segments, trial.windows.inlier_limit)
-    except FitError:
-        columns = trial.windows.residuals[0].shape[1]
-        return np.full((count, columns), np.inf)
+    windows = problem.windows_on(trial, horizon.segments, trial.windows.inlier_limit)
     return errors_by_block(count, list(zip(horizon.blocks, windows.residuals, strict=True)))
 
 
@@ -198,23 +193,20 @@ def _predict_fold(
         return failed
     values: Mapping[str, float] = newton.without(group)
     starts: dict[int, Mapping[str, float]] = {}
-    try:
-        if steps or not newton.exact:
-            segments = [restrict(known[n], rows) for n, rows in kept]
-            first = evaluate_windows(
-                problem.free_criterion(trial, segments, values), trial.windows.inlier_limit
-            )
-            fitted, _ = fit_windows(first, max(steps, 1), ftol=ftol, initial_state_steps=1)
-            values = fitted.values
-            first_held = {n: rows[0] for n, rows in held}
-            starts = {
-                n: start
-                for (n, rows), start in zip(kept, fitted.starts, strict=True)
-                if rows[0] < first_held.get(n, -1)  # later rows hardly tell a start that is damped
-            }
-        residuals = _fold_residuals(problem, trial, held, starts, values)
-    except FitError:
-        return failed
+    if steps or not newton.exact:
+        segments = [restrict(known[n], rows) for n, rows in kept]
+        first = evaluate_windows(
+            problem.free_criterion(trial, segments, values), trial.windows.inlier_limit
+        )
+        fitted, _ = fit_windows(first, max(steps, 1), ftol=ftol, initial_state_steps=1)
+        values = fitted.values
+        first_held = {n: rows[0] for n, rows in held}
+        starts = {
+            n: start
+            for (n, rows), start in zip(kept, fitted.starts, strict=True)
+            if rows[0] < first_held.get(n, -1)  # later rows hardly tell a start that is damped
+        }
+    residuals = _fold_residuals(problem, trial, held, starts, values)
     return [(horizon.blocks[n][rows], r) for (n, rows), r in zip(held, residuals, strict=True)]
 
 

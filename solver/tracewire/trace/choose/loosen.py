@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from tracewire.errors import FitError
 from tracewire.trace.choose.heldout import Finalist
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials.bounds import at_bounds
@@ -34,12 +33,10 @@ def loosen_bounds(problem: TraceProblem, model: Finalist, options: TraceOptions)
     for trial in model.trials:
         both = zip(trial.effects, effects, strict=True)
         freed = tuple(replace(old, candidate=new.candidate) for old, new in both)
-        try:
-            trials.append(
-                problem.refit(replace(trial, effects=freed), trial.windows.segments, trial.length)
-            )
-        except FitError:
+        looser = problem.try_refit(replace(trial, effects=freed))
+        if looser is None:
             return None
+        trials.append(looser)
     pairs = zip(trials, model.trials, strict=True)
     halved = all(new.rss < old.rss / options.hopeful for new, old in pairs)
     return replace(model, trials=tuple(trials)) if halved else None

@@ -225,9 +225,7 @@ class ModelPool:
         trials = tuple(
             rescan_lengths(
                 problem,
-                trial
-                if trial.converged
-                else problem.refit(trial, trial.windows.segments, trial.length),
+                trial if trial.converged else problem.refit(trial),
             )
             for trial in model.trials
         )

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tracewire.compile import Model
-from tracewire.errors import FitError, SimulationError
+from tracewire.errors import SimulationError
 from tracewire.formula import two_digits
 from tracewire.residual import (
     InputCovariance,
@@ -46,11 +46,8 @@ def shown_input_noise(search: Search) -> InputNoise:
     inputs = InputCovariance(problem.sigma, problem.declared, series, search.shortest)
     noisy, limit = replace(problem, measured=series, inputs=inputs), search.options.at_noise
     for trial in dict.fromkeys(search.declared_and_best):
-        try:
-            there = noisy.refit(trial, trial.windows.segments, trial.length)
-        except FitError:
-            continue
-        if 1 / limit < there.reduced_chi2 < limit < trial.reduced_chi2:
+        there = noisy.try_refit(trial)
+        if there is not None and 1 / limit < there.reduced_chi2 < limit < trial.reduced_chi2:
             return noise
     return {}
 

@@ -49,9 +49,7 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
     final = judgement.final
     best = search.refit_precisely(final.best) if final.best.effects else final.best
     if best is not final.best:
-        declared = final.declared
-        declared = search.problem.refit(declared, declared.windows.segments, declared.length)
-        final = replace(final, declared=declared, best=best)
+        final = replace(final, declared=search.problem.refit(final.declared), best=best)
     judgement = _without_undetermined(search, replace(judgement, final=final))
     if judgement.explained is None:  # at the noise; else other runs have been asked already
         judgement = replace(judgement, final=_without_harmful(search, judgement.final))
@@ -139,11 +137,8 @@ def _without_undetermined(search: Search, judgement: Judgement) -> Judgement:
     final = judgement.final
     names = undetermined_effects(final.best, search.options.confidence)
     kept = [effect for effect in final.best.effects if str(effect) not in names]
-    try:
-        fewer = _refit_with(search, final.best, kept) if names and kept else None
-    except FitError:
-        names = []
-    if not names:
+    fewer = _refit_with(search, final.best, kept) if names and kept else None
+    if not names or (kept and fewer is None):
         return judgement
     one = len(names) == 1
     search.words.append(
@@ -166,9 +161,8 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     best, short = final.best, search.short_length
     for effect in best.effects if len(best.effects) > 1 else ():
         kept = [one for one in best.effects if one is not effect]
-        try:
-            fewer = _refit_with(search, best, kept)
-        except FitError:
+        fewer = _refit_with(search, best, kept)
+        if fewer is None:
             continue
         harm = raises_whole_runs(search, fewer, best)
         if harm and not lowers_unseen(search, fewer, best, short):
@@ -178,10 +172,13 @@ def _without_harmful(search: Search, final: FinalModels) -> FinalModels:
     return final
 
 
-def _refit_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial:
-    """A trial with some of its effects, fitted to its windows. Raises FitError."""
+def _refit_with(search: Search, best: Trial, kept: Sequence[PlacedEffect]) -> Trial | None:
+    """A trial with some of its effects, fitted to its windows; None where it does not run."""
     windows, fixed = best.windows.segments, best.windows.criterion.parameters
-    return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
+    try:
+        return search.problem.fit(kept, windows, best.length, best.values, fixed=fixed)
+    except FitError:
+        return None
 
 
 def _with_effects(final: FinalModels, best: Trial) -> FinalModels:

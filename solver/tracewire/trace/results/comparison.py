@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tracewire.array_types import Vector
-from tracewire.errors import FitError
 from tracewire.residual import Section, Segment
 from tracewire.solve import parameter_values
 from tracewire.trace.choose.unseen import join_names
@@ -101,10 +100,7 @@ def on_equal_windows(problem: TraceProblem, declared: Trial, best: Trial) -> Tri
     Where it does not run there, it is as it was."""
     if declared.length == best.length:
         return declared
-    try:
-        return problem.refit(declared, best.windows.segments, best.length)
-    except FitError:
-        return declared
+    return problem.try_refit(declared, best.windows.segments, best.length) or declared
 
 
 def with_unseen_phases(search: Search, trial: Trial) -> Trial:

@@ -19,7 +19,7 @@ import numpy as np
 
 from tracewire.array_types import Vector
 from tracewire.diagram import Diagram, Value
-from tracewire.errors import FitError, SimulationError
+from tracewire.errors import SimulationError
 from tracewire.formula import Number
 from tracewire.residual import evaluate_windows, fit_initial_states
 from tracewire.solve import Interrupted
@@ -76,7 +76,7 @@ def assimilate(
         )
     except Interrupted:
         raise
-    except (FitError, SimulationError):
+    except SimulationError:
         return None
     given_torques = {place.name: [w[:, None] for w in torques[place.name]] for place in places}
     return found.along_torques(given_torques)

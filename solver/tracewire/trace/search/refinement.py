@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tracewire.errors import FitError
 from tracewire.formula import two_digits
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.search.common import least_part, uncommon
@@ -81,10 +80,7 @@ def _refit_on_all_data(search: Search, trial: Trial) -> Trial:
     """The trial over all that is not held back for the final claim, on windows as they are; where
     it does not run on some of them, as it was."""
     windows = search.windows(search.data_split.whole(), trial.length)
-    try:
-        return search.problem.refit(trial, windows, trial.length)
-    except FitError:
-        return trial
+    return search.problem.try_refit(trial, windows, trial.length) or trial
 
 
 def _run_refit(

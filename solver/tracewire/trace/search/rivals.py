@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from tracewire.errors import FitError
 from tracewire.trace.candidates.candidate import is_default
 from tracewire.trace.screen.screening import Screen
 from tracewire.trace.search.refits import few_of, target_of
@@ -133,8 +132,7 @@ def _fit_few_short_windows(search: Search, best: Trial) -> Trial | None:
     rows = few_of(segments, options.few)
     if 2 * len(rows) * length > len(best.windows.segments) * best.length:
         return None
-    try:
-        few = search.problem.refit(best, [segments[n] for n in rows], length)
-    except FitError:
+    few = search.problem.try_refit(best, [segments[n] for n in rows], length)
+    if few is None or not few.reduced_chi2 < search.options.trial.gate_noise:
         return None
-    return few if few.reduced_chi2 < search.options.trial.gate_noise else None
+    return few

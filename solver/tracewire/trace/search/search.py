@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -144,18 +143,16 @@ class Search:
         if not self.omits_windows(trial):
             return trial
         windows = self.windows(self.data_split.train, trial.length)
-        try:
-            whole = self.problem.refit(trial, windows, trial.length)
-        except FitError:
+        whole = self.problem.try_refit(trial, windows, trial.length)
+        if whole is None or not whole.reduced_chi2 < self.options.search.far:
             return trial
-        return whole if whole.reduced_chi2 < self.options.search.far else trial
+        return whole
 
     def finish(self, trial: Trial) -> Trial:
         """A trial whose fit has converged, where it does so in another run of steps, with lengths
         that were scanned beside it."""
         if not trial.converged:
-            with suppress(FitError):
-                trial = self.problem.refit(trial, trial.windows.segments, trial.length)
+            trial = self.problem.try_refit(trial) or trial
         return rescan_lengths(self.problem, trial)
 
     def tighten(self) -> None:
@@ -172,7 +169,7 @@ class Search:
             if not is_loose(self.problem, trial):
                 break
             self.tighten()
-            trial = self.problem.refit(trial, trial.windows.segments, trial.length)
+            trial = self.problem.refit(trial)
         return trial
 
     def lengthen_windows(

@@ -12,7 +12,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracewire.errors import FitError
 from tracewire.residual import evaluate_windows, project_out_initial_states
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import orthonormal
@@ -26,12 +25,8 @@ def rescan_lengths(problem: TraceProblem, trial: Trial) -> Trial:
         effects = tuple(_rescan(problem, trial, effect) for effect in trial.effects)
         if all(new is old for new, old in zip(effects, trial.effects, strict=True)):
             break
-        try:
-            segments = trial.windows.segments
-            better = problem.refit(replace(trial, effects=effects), segments, trial.length)
-        except FitError:
-            break
-        if not better.rss < trial.rss:
+        better = problem.try_refit(replace(trial, effects=effects))
+        if better is None or not better.rss < trial.rss:
             break
         trial = better
     return trial

@@ -245,10 +245,30 @@ class TraceProblem:
             if (known := self.unwritable[place]) is not None:
                 raise known
 
+    def try_refit(
+        self,
+        trial: Trial,
+        segments: Sequence[Segment] | None = None,
+        length: int | None = None,
+        target: float = np.inf,
+    ) -> Trial | None:
+        """A trial refitted as by `refit`; None where the model does not run."""
+        try:
+            return self.refit(trial, segments, length, target)
+        except FitError:
+            return None
+
     def refit(
-        self, trial: Trial, segments: Sequence[Segment], length: int, target: float = np.inf
+        self,
+        trial: Trial,
+        segments: Sequence[Segment] | None = None,
+        length: int | None = None,
+        target: float = np.inf,
     ) -> Trial:
-        """A trial fitted to other windows, from where it stands; `target` as in `fit`."""
+        """A trial fitted to other windows, of about `length` samples, from where it stands; to its
+        own ones unless others are given. `target` and what is raised are as in `fit`."""
+        segments = trial.windows.segments if segments is None else segments
+        length = trial.length if length is None else length
         fixed = trial.windows.criterion.parameters
         effects = self.fit_unseen_phases(trial, segments)
         found = self.fit(
