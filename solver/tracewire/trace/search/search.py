@@ -26,7 +26,7 @@ from tracewire.trace.search.common import common_first
 from tracewire.trace.search.refits import RefitResult, Refits, new_effects
 from tracewire.trace.search.workers import Workers
 from tracewire.trace.trials.data_split import DataSplit
-from tracewire.trace.trials.judge import GateResult, judge_on_gate
+from tracewire.trace.trials.judge import judge_on_gate
 from tracewire.trace.trials.precision import is_loose, tighter
 from tracewire.trace.trials.relative_error import relative_error
 from tracewire.trace.trials.scanned_lengths import rescan_lengths
@@ -267,9 +267,9 @@ class Search:
         while queue and winner is None:
             number = queue.pop(0)
             numbers_judged.add(number)
-            verdict, simpler = self.judge(now, results[number], results)
-            results[number] = replace(results[number], remark=verdict.words)
-            if verdict.passed:
+            passed, remark, simpler = self.judge(now, results[number], results)
+            results[number] = replace(results[number], remark=remark)
+            if passed:
                 winner = results[number]
             elif simpler is not None and simpler not in numbers_judged:
                 # its part stands in its place
@@ -369,21 +369,21 @@ class Search:
 
     def judge(
         self, now: Trial, one: RefitResult, results: Sequence[RefitResult]
-    ) -> tuple[GateResult, int | None]:
-        """What the gate says of a trial, also beside each simpler one that was tried, and the
-        number of the one that it does not improve on."""
+    ) -> tuple[bool, str, int | None]:
+        """Whether a trial passes the gate, also beside each simpler one that was tried, that in
+        words, and the number of the one that it does not improve on."""
         length = one.trial.length
         windows = self.windows(self.data_split.gate, length)
-        verdict = judge_on_gate(self.problem, now, one.trial, windows, -one.delta_bic)
+        passed, words = judge_on_gate(self.problem, now, one.trial, windows, -one.delta_bic)
         for number, other in enumerate(results):
-            if verdict.passed and _is_simpler(other, one):
+            if passed and _is_simpler(other, one):
                 bic_reduction = other.delta_bic - one.delta_bic
-                verdict = judge_on_gate(
+                passed, words = judge_on_gate(
                     self.problem, other.trial, one.trial, windows, bic_reduction
                 )
-                if not verdict.passed:
-                    return verdict, number
-        return verdict, None
+                if not passed:
+                    return False, words, number
+        return passed, words, None
 
 
 def moved_values(declared: Model, values: Mapping[str, float], most: float) -> dict[str, float]:

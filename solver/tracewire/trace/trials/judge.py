@@ -3,23 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from tracewire.residual import Segment, restart_from_others
 from tracewire.trace.trials.trial import TraceProblem, Trial
-
-
-@dataclass(frozen=True)
-class GateResult:
-    """What the gate says of a trial: whether it passes, by how much the squared error falls there,
-    the paired z over windows, and that in words."""
-
-    passed: bool
-    drop: float
-    z: float
-    words: str
 
 
 def judge_on_gate(
@@ -28,8 +16,8 @@ def judge_on_gate(
     trial: Trial,
     windows: Sequence[Segment],
     bic_reduction: float,
-) -> GateResult:
-    """Whether a trial does better than another on windows that no fit saw.
+) -> tuple[bool, str]:
+    """Whether a trial does better than another on windows that no fit saw, and that in words.
 
     Its squared error must be 2 % smaller there (and by a third of what is above the noise, where it
     stays far above that where it was fitted: there everything is significant), and either the
@@ -48,7 +36,7 @@ def judge_on_gate(
     if at_noise and astray.sum() <= options.gate_few_astray * len(astray):
         before, after, noise = before[~astray], after[~astray], noise[~astray]
     if not before.sum() > 0:
-        return GateResult(False, 0.0, 0.0, "gate: nothing to improve")
+        return False, "gate: nothing to improve"
     drop = float(1 - after.sum() / before.sum())
     change = before - after
     spread = float(np.std(change, ddof=1)) if len(change) > 1 else 0.0
@@ -65,4 +53,4 @@ def judge_on_gate(
     passed = drop > least and bool(supported)
     size = f"{abs(drop):.0%}" if not 0.995 <= drop < 1 else "more than 99.5%"
     words = f"gate: squared error {'falls' if drop > 0 else 'rises'} by {size}"
-    return GateResult(passed, drop, float(z), words + (", passed" if passed else ", refused"))
+    return passed, words + (", passed" if passed else ", refused")
