@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from tracewire.arguments import checked
 from tracewire.blas import one_blas_thread
@@ -75,31 +75,20 @@ def trace(
     tell = progress or (lambda text: None)
     tell_in_time = limit_time(options.budget, tell)
     search = set_up_search(subject, measured, rtol, tell_in_time, options, executor)
-    ended = _run(search)
-    if ended.input_noise:
+    judgement = _run(search)
+    if noise := judgement.input_noise:
         tell_in_time("searching again with the noise that the inputs show")
-        noise = ended.input_noise
         try:
             again = set_up_search(subject, measured, rtol, tell_in_time, options, executor, noise)
             again.note(describe_input_noise(noise, search.problem.declared))
-            search, ended = again, _run(again)
+            search, judgement = again, _run(again)
         except (KeyboardInterrupt, OutOfTime) as stopped:
-            ended = _interrupted(search, stopped)
+            judgement = _interrupted(search, stopped)
     search.tell = tell
-    return result_of(search, ended.judgement, ended.prediction, ended.interrupted)
+    return result_of(search, judgement)
 
 
-class _Ended(NamedTuple):
-    """How a search ended: the verdict, the comparison that it rests on, if any, and whether it was
-    interrupted; or the noise of inputs with which it is to be done again."""
-
-    judgement: Judgement
-    prediction: Prediction | None = None
-    interrupted: bool = False
-    input_noise: InputNoise | None = None
-
-
-def _run(search: Search) -> _Ended:
+def _run(search: Search) -> Judgement:
     """Search and judge; what was found so far where that is interrupted. It is to be done again
     where no model reaches the noise of the sensors, and one does with the noise of the inputs."""
     prediction: Prediction | None = None
@@ -110,8 +99,8 @@ def _run(search: Search) -> _Ended:
         found = judge_at_noise(search, first, best)
         if found is None:
             if noise := shown_input_noise(search):
-                judgement = Judgement("unexplained", FinalModels(first, best))
-                return _Ended(judgement, input_noise=noise)
+                final = FinalModels(first, best)
+                return Judgement("unexplained", final, input_noise=noise)
             prediction = predict(search, first)
             found = judge_prediction(search, prediction)
         judgement = safeguard(search, found)
@@ -121,16 +110,16 @@ def _run(search: Search) -> _Ended:
         if search.best is None:
             raise
         return _interrupted(search, stopped)
-    return _Ended(judgement, prediction)
+    return replace(judgement, prediction=prediction)
 
 
-def _interrupted(search: Search, stopped: BaseException) -> _Ended:
+def _interrupted(search: Search, stopped: BaseException) -> Judgement:
     """What a search has found when it is ended early."""
     if isinstance(stopped, OutOfTime):
         budget = search.options.budget
         search.words.append(f"the search ended after its budget of {budget:g} s")
-    judgement = Judgement("unexplained", FinalModels(*search.declared_and_best))
-    return _Ended(judgement, interrupted=True)
+    final = FinalModels(*search.declared_and_best)
+    return Judgement("unexplained", final, interrupted=True)
 
 
 def set_up_search(

@@ -11,7 +11,7 @@ from tracewire.errors import FitError
 from tracewire.formula import two_digits
 from tracewire.trace.choose.choice import is_sure, log_scores
 from tracewire.trace.choose.heldout import Finalist
-from tracewire.trace.choose.noisy_inputs import noisy_inputs
+from tracewire.trace.choose.noisy_inputs import InputNoise, noisy_inputs
 from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.remainder import (
     error_left,
@@ -49,8 +49,14 @@ from tracewire.trace.trials.trial import Trial
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """The verdict, the models that it is about, and what it rests on. `reason`: why effects that
-    came near are not named, or do not explain what is missing."""
+    """The verdict, the models that it is about, and what it rests on.
+
+    `reason` says why effects that came near are not named, or do not explain what is missing.
+    `prediction` is the comparison of models by what they predict, where the noise was not reached.
+    `interrupted` says that the search was ended early: this is what it had found. `input_noise` is
+    the noise of inputs with which a model reaches that of the sensors: the search is to be done
+    again with it.
+    """
 
     verdict: Verdict
     final: FinalModels
@@ -62,6 +68,9 @@ class Judgement:
     held_out: tuple[HeldOut, ...] = ()
     noisy_inputs: tuple[LikelyInput, ...] = ()
     reason: str = ""
+    prediction: Prediction | None = None
+    interrupted: bool = False
+    input_noise: InputNoise | None = None
 
 
 def noise_limit(search: Search, trial: Trial) -> float:

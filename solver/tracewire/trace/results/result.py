@@ -18,7 +18,6 @@ from tracewire.formula import two_digits
 from tracewire.library import SENSOR_TERMS
 from tracewire.residual import is_of_sensor
 from tracewire.trace.candidates.changes import changes_of
-from tracewire.trace.choose.prediction import Prediction
 from tracewire.trace.choose.verdict import Judgement
 from tracewire.trace.experiment.experiment import design_experiment
 from tracewire.trace.experiment.power import detection_limits
@@ -50,12 +49,11 @@ from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.trial import Trial
 
 
-def result_of(
-    search: Search, judgement: Judgement, prediction: Prediction | None, interrupted: bool
-) -> Found:
+def result_of(search: Search, judgement: Judgement) -> Found:
     """The result of a search."""
     search.tell("checking on what played no part")
-    final = judgement.final if interrupted else largest_first(search, judgement.final)
+    final, interrupted = judgement.final, judgement.interrupted
+    final = final if interrupted else largest_first(search, final)
     final = replace(final, best=with_unseen_phases(search, final.best))
     problem, declared, best = search.problem, final.declared, final.best
     search.words += describe_bounds(declared, best)
@@ -68,6 +66,8 @@ def result_of(
     units |= {name: p.unit for name, p in best.model.flat.parameters.items()}
     interval = float(np.median([m.interval for m in problem.measured]))
     steps = [_step_of(step, interval, search.options.shown) for step in search.steps]
+    if judgement.prediction is not None:
+        steps.append(judgement.prediction.as_step())
     return Found(
         verdict=judgement.verdict,
         effects=_effects_of(search, final),
@@ -81,7 +81,7 @@ def result_of(
         s2_after=best.reduced_chi2,
         moved=tuple(parameter_changes(problem, declared, best, values)),
         errors=tuple(error for part in parts for error in part.errors(sigma, units)),
-        steps=(*steps, *([prediction.as_step()] if prediction else [])),
+        steps=tuple(steps),
         power=detection_limits(search.steps[-1].screen) if search.steps else (),
         dependences=judgement.dependences,
         missing=judgement.missing,
