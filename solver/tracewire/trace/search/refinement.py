@@ -14,7 +14,6 @@ from tracewire.trace.search.common import least_part, uncommon
 from tracewire.trace.search.refits import few_of, target_of
 from tracewire.trace.search.rivals import count_numbers, known_rivals, refit_rivals
 from tracewire.trace.search.search import Search
-from tracewire.trace.search.workers import RefitTask
 from tracewire.trace.thresholds import SearchOptions
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import errors_behind
@@ -87,23 +86,15 @@ def _run_refit(
     search: Search,
     trial: Trial,
     effects: Sequence[PlacedEffect],
-    fixed: dict[str, float] | None = None,
+    fixed: Mapping[str, float] | None = None,
 ) -> Trial | None:
     """The trial with other effects on the same windows; None where that does not run."""
-    (smaller,) = search.refits.run(trial, [_prepare_refit(search, trial, effects, fixed)])
-    return smaller
-
-
-def _prepare_refit(
-    search: Search,
-    trial: Trial,
-    effects: Sequence[PlacedEffect],
-    fixed: dict[str, float] | None = None,
-    words: str = "",
-) -> RefitTask:
-    """The trial with other effects on the same windows, to be refitted."""
-    segments, target = trial.windows.segments, target_of(trial, search.options)
-    return search.refits.prepare(trial, effects, segments, fixed=fixed, target=target, words=words)
+    target = target_of(trial, search.options)
+    fixed = trial.windows.criterion.parameters if fixed is None else fixed
+    segments = trial.windows.segments
+    task = search.refits.prepare(trial, effects, segments, fixed=fixed, target=target)
+    (other,) = search.refits.run(trial, [task])
+    return other
 
 
 def _exchange_effect(
@@ -241,11 +232,12 @@ def _prune(search: Search, best: Trial) -> Trial:
         costs = []
         at_noise = best.reduced_chi2 < options.trial.gate_noise
         tasks = [
-            _prepare_refit(
-                search,
+            search.refits.prepare(
                 best,
                 [e for e in best.effects if e is not effect],
+                best.windows.segments,
                 words=f"trying without {effect}",
+                target=target_of(best, options),
             )
             for effect in best.effects
             if not at_noise
@@ -378,7 +370,7 @@ def _drop_terms(search: Search, best: Trial) -> tuple[Trial, tuple[str, ...]]:
         if at_noise and best.values[unknown.name] > options.certain * error:
             continue
         fixed = {**best.windows.criterion.parameters, unknown.name: 0.0}
-        smaller = _run_refit(search, best, best.effects, fixed)
+        smaller = _run_refit(search, best, best.effects, fixed=fixed)
         if smaller is None:
             continue
         loss = smaller.bic(best.effective_fraction) - best.bic(best.effective_fraction)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Unpack
 
 import numpy as np
 
 from tracewire.errors import TracewireError
-from tracewire.residual import DESCENT, WINDOW, Segment
+from tracewire.residual import Segment
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.screen.screening import Proposal
 from tracewire.trace.search.workers import RefitTask, Workers
 from tracewire.trace.thresholds import SearchOptions
+from tracewire.trace.trials.fit_options import FitOptions
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.trial import TraceProblem, Trial, with_starts_of
 
@@ -159,34 +161,21 @@ class Refits:
         now: Trial,
         effects: Sequence[PlacedEffect],
         segments: Sequence[Segment],
-        *,
-        fixed: Mapping[str, float] | None = None,
-        steps: int | None = None,
-        target: float = np.inf,
-        ftol: float = DESCENT.ftol,
-        initial_state_steps: int = WINDOW.initial_state_steps,
         values: Mapping[str, float] | None = None,
         words: str = "",
+        **options: Unpack[FitOptions],
     ) -> RefitTask:
         """The model with other effects, to be refitted from where it stood, or from other values of
         what is declared; `words` are told with its number among others."""
-        steps = self.options.steps if steps is None else steps
-        return RefitTask(
-            tuple(effects),
-            tuple(segments),
-            now.length,
-            {**now.values, **(values or {})},
-            {
-                "fixed": now.windows.criterion.parameters if fixed is None else fixed,
-                "steps": steps,
-                "budget": self.options.slower * steps * len(segments) * now.steps_per_run,
-                "target": target,
-                "inlier_limit": now.inlier_limit,
-                "ftol": ftol,
-                "initial_state_steps": initial_state_steps,
-            },
-            words,
+        steps = options.get("steps", self.options.steps)
+        usual = FitOptions(
+            fixed=now.windows.criterion.parameters,
+            steps=steps,
+            budget=self.options.slower * steps * len(segments) * now.steps_per_run,
+            inlier_limit=now.inlier_limit,
         )
+        begin = {**now.values, **(values or {})}
+        return RefitTask(tuple(effects), tuple(segments), now.length, begin, usual | options, words)
 
     def run(self, now: Trial, refits: Sequence[RefitTask]) -> list[Trial | None]:
         """The trial of each refit, side by side where there are workers; None where a model does

@@ -12,6 +12,7 @@ from tracewire.blas import one_blas_thread
 from tracewire.errors import DiagramError, FitError, OptionError, TracewireError
 from tracewire.residual import Segment
 from tracewire.solve import StopFlag, WorkerEnded, carry_out
+from tracewire.trace.trials.fit_options import FitOptions
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.trial import TraceProblem, Trial
 
@@ -27,7 +28,7 @@ class RefitTask:
     segments: tuple[Segment, ...]
     length: int
     values: Mapping[str, float]
-    options: Mapping[str, Any]
+    options: FitOptions
     words: str = ""
 
 

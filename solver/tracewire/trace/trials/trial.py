@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
+from typing import Unpack
 
 import numpy as np
 from scipy.special import stdtrit
@@ -39,6 +40,7 @@ from tracewire.trace.candidates.changes import changes_of
 from tracewire.trace.candidates.drive_sines import Sine, drive_sines_of
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.thresholds import TrialOptions
+from tracewire.trace.trials.fit_options import FitOptions
 from tracewire.trace.trials.phase_fit import fit_phase
 from tracewire.trace.trials.placed_effect import PlacedEffect
 from tracewire.trace.trials.statistics import (
@@ -188,42 +190,36 @@ class TraceProblem:
         segments: Sequence[Segment],
         length: int,
         values: Mapping[str, float],
-        *,
-        fixed: Mapping[str, float] | None = None,
-        steps: int | None = None,
-        budget: float = np.inf,
-        target: float = np.inf,
-        inlier_limit: float | None = None,
-        ftol: float = DESCENT.ftol,
-        initial_state_steps: int = WINDOW.initial_state_steps,
+        **options: Unpack[FitOptions],
     ) -> Trial:
         """The declared diagram with effects fitted to windows, from the values given.
 
-        `fixed` are parameters that are not fitted, `budget` the steps of all runs together. A fit
-        that is too slow to reach the sum of squares `target` ends early; windows whose squared
-        residual is at most `inlier_limit` are not taken for astray; `ftol` and
-        `initial_state_steps` as in `fit_windows`. Raises FitError where the
-        model cannot be simulated, DiagramError or OptionError where an effect cannot be wired, or
-        the text at its place cannot be edited by program.
+        Raises FitError where the model cannot be simulated, DiagramError or OptionError where an
+        effect cannot be wired, or the text at its place cannot be edited by program.
         """
-        steps = self.options.trial.steps if steps is None else steps
-        inlier_limit = self.options.trial.not_astray if inlier_limit is None else inlier_limit
+        own, fixed = self.options.trial, options.get("fixed", {})
         diagram, model = self.declared.diagram, self.declared
         if effects:
             added = [(effect.candidate, effect.values) for effect in effects]
             diagram = apply(diagram, changes_of(diagram, added))
             self._refuse_unwritable(effects)
             model = self.compile_diagram(diagram)
-        fixed = fixed or {}
         unknowns = [u for u in self._unknowns(effects, values) if u.name not in fixed]
         segments = [_drop_foreign_starts(segment, model) for segment in segments]
         criterion = self._criterion(
             model, self.with_series_values(segments, effects), unknowns, fixed, effects
         )
+        budget = options.get("budget", np.inf)
         criterion.budget = budget * _time_of(criterion.segments) / _time_of(segments)
-        windows = evaluate_windows(criterion, inlier_limit)
+        windows = evaluate_windows(criterion, options.get("inlier_limit", own.not_astray))
         _refuse_failed(criterion, windows)
-        windows, converged = fit_windows(windows, steps, target, ftol, initial_state_steps)
+        windows, converged = fit_windows(
+            windows,
+            options.get("steps", own.steps),
+            options.get("target", np.inf),
+            options.get("ftol", DESCENT.ftol),
+            options.get("initial_state_steps", WINDOW.initial_state_steps),
+        )
         _refuse_failed(criterion, windows)
         if effects:
             release(model)  # a search keeps hundreds of models
@@ -266,7 +262,7 @@ class TraceProblem:
         target: float = np.inf,
     ) -> Trial:
         """A trial fitted to other windows, of about `length` samples, from where it stands; to its
-        own ones unless others are given. `target` and what is raised are as in `fit`."""
+        own ones unless others are given. `target` is that of FitOptions. Raises as `fit` does."""
         segments = trial.windows.segments if segments is None else segments
         length = trial.length if length is None else length
         fixed = trial.windows.criterion.parameters
