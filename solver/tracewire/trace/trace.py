@@ -29,12 +29,7 @@ from tracewire.trace.check.outliers import drop_outliers
 from tracewire.trace.check.refusals import check_series, remarks, without_still
 from tracewire.trace.choose.noisy_inputs import InputNoise, describe_input_noise, shown_input_noise
 from tracewire.trace.choose.prediction import Prediction, predict
-from tracewire.trace.choose.safeguards import (
-    fit_declared,
-    refuse_mistaken,
-    safeguard,
-    tell_waves_tried_once,
-)
+from tracewire.trace.choose.safeguards import refuse_mistaken, safeguard, tell_waves_tried_once
 from tracewire.trace.choose.verdict import Judgement, judge_at_noise, judge_prediction
 from tracewire.trace.found import Found
 from tracewire.trace.options import TraceOptions
@@ -93,7 +88,7 @@ def _run(search: Search) -> Judgement:
     where no model reaches the noise of the sensors, and one does with the noise of the inputs."""
     prediction: Prediction | None = None
     try:
-        declared = fit_declared(search)
+        declared = search.fit_declared_precisely()
         search.run(declared)
         first, best = search.declared_and_best
         found = judge_at_noise(search, first, best)

@@ -45,7 +45,7 @@ class ModelPool:
     """By horizon, the last model of which some windows were asked for, and these: a screen, one
     along the data, and the refits that they ask for begin there."""
 
-    def fit_declared(self, declared_fit: Trial) -> Finalist:
+    def fit_declared_at_horizons(self, declared_fit: Trial) -> Finalist:
         """The declared model at each horizon, from a fit of it."""
         problem, trials, trial = self.search.problem, [], declared_fit
         for horizon in self.horizons.each:

@@ -183,7 +183,7 @@ def predict(search: Search, declared_fit: Trial) -> Prediction:
     )
     search.tell("fitting the declared model at both horizons")
     pool = ModelPool(search, horizons, options)
-    declared = pool.fit_declared(declared_fit)
+    declared = pool.fit_declared_at_horizons(declared_fit)
     fill_pool(pool, declared)
     errors: dict[Key, Array] = {}
     _compare(pool, declared, errors)

@@ -26,20 +26,8 @@ from tracewire.trace.choose.verdict import Judgement, residual_map
 from tracewire.trace.search.refinement import FinalModels
 from tracewire.trace.search.search import Search
 from tracewire.trace.trials.placed_effect import PlacedEffect
-from tracewire.trace.trials.precision import is_loose
 from tracewire.trace.trials.statistics import inverse_information
 from tracewire.trace.trials.trial import Trial
-
-
-def fit_declared(search: Search) -> Trial:
-    """The declared fit, with a tolerance at which the solver's error does not count."""
-    declared = search.fit_declared()
-    for _ in range(search.options.check.tightened):
-        if not is_loose(search.problem, declared):
-            break
-        search.tighten()
-        declared = search.fit_declared()
-    return declared
 
 
 def safeguard(search: Search, judgement: Judgement) -> Judgement:

@@ -162,6 +162,16 @@ class Search:
             f"the solver's error counted beside the residual: rtol is {self.problem.rtol:.0e} now"
         )
 
+    def fit_declared_precisely(self) -> Trial:
+        """The declared fit, with a tolerance at which the solver's error does not count."""
+        trial = self.fit_declared()
+        for _ in range(self.options.check.tightened):
+            if not is_loose(self.problem, trial):
+                break
+            self.tighten()
+            trial = self.fit_declared()
+        return trial
+
     def refit_precisely(self, trial: Trial) -> Trial:
         """A trial with a tolerance at which the solver's error does not count. It grows with the
         windows: on long ones another effect may seem to explain it."""
