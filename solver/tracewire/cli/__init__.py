@@ -7,13 +7,13 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from tracewire.cli.interrupt import INTERRUPTED, is_interrupt
+
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 __all__ = ["main"]
 
-INTERRUPTED = 128 + signal.SIGINT
-"""The exit code after Ctrl-C, as of a shell."""
 SOON = 0.01
 """Seconds after which an interrupt that was lost comes again."""
 
@@ -32,9 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         code = run(arguments)
     except (KeyboardInterrupt, RuntimeError, ImportError) as error:
-        # Python 3.11 makes a RuntimeError of what is raised while it makes a class, and pybind11 an
-        # ImportError of what is raised while a module of C++ is loaded
-        if KeyboardInterrupt not in (type(error), type(error.__cause__)):
+        if not is_interrupt(error):
             raise
         if sys.stderr is not None:
             sys.stderr.write("interrupted; nothing was finished.\n")

@@ -14,11 +14,12 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from tracewire.cli.interrupt import INTERRUPTED, is_interrupt
 from tracewire.cli.limits import LIMITS
 from tracewire.cli.multi_value import MultiValueCommand
-from tracewire.cli.output import INTERRUPTED, Cut, print_problems
+from tracewire.cli.output import Cut, print_problems
 from tracewire.cli.records import with_fields
-from tracewire.cli.streams import close_streams, open_streams
+from tracewire.cli.streams import safe_streams
 from tracewire.cli.verb_group import VerbGroup
 from tracewire.errors import Problem, TracewireError
 
@@ -109,32 +110,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
     that takes no more ends the command with 1; one that is closed, and stderr, change nothing.
     """
     given = list(sys.argv[1:] if arguments is None else arguments) or ["--help"]
-    as_json, debug = "--json" in given, "--debug" in given
     if arguments is None:  # the process is this command's own
         gc.set_threshold(LIMITS.new_objects)
-    open_streams()
-    return close_streams(_ended(given, as_json, debug))
-
-
-def _ended(given: list[str], as_json: bool, debug: bool) -> int:
-    """Run a command, and tell its errors; the exit code."""
-    try:
-        known = given[0] in VERBS or given == ["--version"]  # to import all verbs takes 0.2 s
-        app = _app([verb for verb in VERBS if verb in given[:1] or not known])
-        ended: object = get_command(app).main(given, prog_name="tracewire", standalone_mode=False)
-        if ended != INTERRUPTED:  # what typer makes of an interrupt
-            return ended if isinstance(ended, int) else 0
-        problems, code = [STOPPED], INTERRUPTED
-    except Cut:
-        return INTERRUPTED
-    except SystemExit as end:  # what typer makes of a reader that has gone
-        return end.code if isinstance(end.code, int) else 1
-    except (Exception, KeyboardInterrupt) as error:
-        problems, code = _told(error, given)
-        if debug:
-            traceback.print_exception(error)
-    print_problems(problems, as_json)
-    return code
+    problems: list[Problem] = []
+    with safe_streams() as ending:
+        try:
+            known = given[0] in VERBS or given == ["--version"]  # to import all verbs takes 0.2 s
+            command = get_command(_app([verb for verb in VERBS if verb in given[:1] or not known]))
+            ended: object = command.main(given, prog_name="tracewire", standalone_mode=False)
+            ending.code = ended if isinstance(ended, int) else 0
+            if ended == INTERRUPTED:  # what typer makes of an interrupt
+                problems = [STOPPED]
+        except Cut:
+            ending.code = INTERRUPTED
+        except SystemExit as end:  # what typer makes of a reader that has gone
+            ending.code = end.code if isinstance(end.code, int) else 1
+        except (Exception, KeyboardInterrupt) as error:
+            problems, ending.code = _told(error, given)
+            if "--debug" in given:
+                traceback.print_exception(error)
+        if problems:
+            print_problems(problems, "--json" in given)
+    return ending.code
 
 
 def _version() -> str:
@@ -148,9 +145,7 @@ def _told(error: BaseException, given: Sequence[str]) -> tuple[list[Problem], in
         return list(error.problems), error.exit_code
     if isinstance(error, USAGE_ERROR):
         return [_usage(error, given)], 2
-    # Python 3.11 makes a RuntimeError of it in a class, pybind11 an ImportError in a module of C++
-    cause = error.__cause__ if isinstance(error, RuntimeError | ImportError) else None
-    if isinstance(cause or error, KeyboardInterrupt | typer.Abort):
+    if is_interrupt(error) or isinstance(error, typer.Abort):
         return [STOPPED], INTERRUPTED
     what = f"internal error ({type(error).__name__}: {error})"
     return [Problem(what, hint="Please report it; --debug shows the traceback.")], 1

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import signal
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -22,8 +21,6 @@ from tracewire.result import plain
 if TYPE_CHECKING:
     from tracewire.show import Table
 
-INTERRUPTED = 128 + signal.SIGINT
-"""The exit code after Ctrl-C, as of a shell."""
 CONTROLS = {
     number: f"\\x{number:02x}" if number < 256 else f"\\u{number:04x}"
     for first, last in (

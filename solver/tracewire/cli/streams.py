@@ -4,14 +4,29 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import TextIO
 
 from tracewire.cli.output import LOST, flush, note
 
 
-def open_streams() -> None:
-    """Make both streams take any text: one that is closed takes it and forgets it."""
+@dataclass
+class Ending:
+    """How a command ends."""
+
+    code: int = 0
+
+
+@contextmanager
+def safe_streams() -> Iterator[Ending]:
+    """Let both streams take any text meanwhile, and bring out at the end what was printed.
+
+    One that is closed takes it and forgets it. The exit code of what is given is not 0 then where
+    stdout did not take it all. That a reader such as `head` has seen enough is not told; a full
+    disk is.
+    """
     LOST.clear()
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
@@ -19,16 +34,11 @@ def open_streams() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115
         elif hasattr(stream, "reconfigure"):  # a terminal without a letter must not stop the work
             stream.reconfigure(errors="replace")
-
-
-def close_streams(code: int) -> int:
-    """Bring out what was printed; the exit code, which is not 0 where stdout did not take it all.
-
-    That a reader such as `head` has seen enough is not told; a full disk is.
-    """
+    ending = Ending()
+    yield ending
     flush()
     if LOST:
-        code = code or 1
+        ending.code = ending.code or 1
         _forget(sys.stdout)
         if not any(isinstance(error, BrokenPipeError) for error in LOST):
             note(f"stdout cannot be written: {LOST[0].strerror or LOST[0]}.")
@@ -36,7 +46,6 @@ def close_streams(code: int) -> int:
         sys.stderr.flush()
     except OSError:
         _forget(sys.stderr)
-    return code
 
 
 def _forget(stream: TextIO) -> None:
