@@ -3,57 +3,51 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.values import values_of
+from tracewire.cli.values import parameter_values_of, start_values_of, values_of
 from tracewire.errors import OptionError, Problem, TracewireError
 
 if TYPE_CHECKING:
+    from tracewire.cli.run_records import RunGiven
     from tracewire.compile import Model
     from tracewire.solve import Options
 
 
 @dataclass(frozen=True)
 class Case:
-    """A preset, values and start values that one of several runs has beside those of all."""
+    """One of several runs: what sets it apart, and its options as `simulate` takes them."""
 
     name: str
-    preset: str
-    parameters: Mapping[str, float]
-    start: Mapping[str, float]
-
-    @property
-    def options(self) -> Options:
-        """These, as `simulate` takes them."""
-        from tracewire.solve import Options
-
-        return Options(parameters=self.parameters, start=self.start, preset=self.preset)
+    options: Options
 
 
-def cases_of(
-    model: Model,
-    over: Sequence[str],
-    presets: Sequence[str],
-    parameters: Collection[str],
-    start: Collection[str],
-) -> list[Case]:
-    """Each preset with each value of each parameter. Raises OptionError.
+def cases_of(model: Model, given: RunGiven, conditions: Options, more: Options) -> list[Case]:
+    """Each preset with each value of each parameter that the user gives. Raises OptionError.
 
-    parameters, start: what all cases set to one value.
+    conditions: those of a measured series, over which the user's values go. more: further options
+    of all cases.
     """
-    grid = values_of(model, over, parameters=parameters, start=start)
-    presets = list(dict.fromkeys(presets)) or [""]
+    from tracewire.solve import Options, with_options, with_row
+
+    parameters = parameter_values_of(model, given.values or ())
+    start = start_values_of(model, given.start or ())
+    grid = values_of(model, given.over or (), parameters=parameters, start=start)
+    presets = list(dict.fromkeys(given.preset or ())) or [""]
+    own = Options(parameters=parameters, start=start)
+    options = with_options(conditions, own | more)
     found = []
     for preset, *values in itertools.product(presets, *grid.values()):
-        given = {name: float(value) for name, value in zip(grid, values, strict=True)}
-        told = [_told(model, name, value) for name, value in given.items()]
+        row = {name: float(value) for name, value in zip(grid, values, strict=True)}
+        told = [_told(model, name, value) for name, value in row.items()]
         parts = [*([preset] if len(presets) > 1 else []), *told]
-        parameters = {n: v for n, v in given.items() if n in model.flat.parameters}
-        start = {n.removeprefix("start."): v for n, v in given.items() if n not in parameters}
-        found.append(Case(", ".join(parts), preset, parameters, start))
+        chosen = with_row(model, options, row)
+        if preset:
+            chosen["preset"] = preset
+        found.append(Case(", ".join(parts), chosen))
     if len(found) > LIMITS.most_cases:
         what = f"{len(found)} runs do not go into one figure"
         hint = f"Take {LIMITS.most_cases} at most; "

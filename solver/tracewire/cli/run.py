@@ -14,7 +14,7 @@ from tracewire.cli.output import note, print_json, print_table, print_text, tell
 from tracewire.cli.records import Sampling
 from tracewire.cli.reporting import write_report
 from tracewire.cli.run_records import Accuracy, RunGiven, RunTarget
-from tracewire.cli.values import parameter_values_of, start_values_of, units_of
+from tracewire.cli.values import units_of
 from tracewire.errors import Problem, TracewireError
 from tracewire.files import writing
 
@@ -46,17 +46,14 @@ def run(
     """
     target.check()
     model = load_model(diagram, given.library, given.record)
-    parameters = parameter_values_of(model, given.values or ())
-    starts = start_values_of(model, given.start or ())
+    from tracewire.solve import Interrupted, Options
+
     units = units_of(model, target.unit or ())
-    cases = cases_of(model, given.over or (), given.preset or (), parameters, starts)
+    conditions, measured = read_series(model, given.series)
+    more = Options(span=sampling.span, every=sampling.every) | accuracy.options
+    cases = cases_of(model, given, conditions, more)
     if len(cases) > 1:
         target.check_several()
-    from tracewire.solve import Interrupted, Options, with_options
-
-    conditions, measured = read_series(model, given.series)
-    own = Options(parameters=parameters, start=starts, span=sampling.span, every=sampling.every)
-    options = with_options(conditions, own | accuracy.options)
     # a figure of a quick swing needs more points than a table of it
     is_spaced = sampling.every is not None or model.flat.every is not None
     finer = bool(target.figure or target.report) and not is_spaced
@@ -66,7 +63,7 @@ def run(
     for case in cases:
         what = f"simulating {diagram}" + (f" with {case.name}" if case.name else "")
         try:
-            run_of_case = _simulated(model, with_options(options, case.options), finer, what, lost)
+            run_of_case = _simulated(model, case.options, finer, what, lost)
         except Interrupted:
             raise
         except TracewireError as error:
