@@ -68,7 +68,7 @@ def in_units(model: Model, units: Mapping[str, float], second: float) -> Model:
             for memory in flat.memories
         ),
     )
-    return Model(model.diagram, changed, lower(changed), model.recorded, "quick")
+    return replace(model, flat=changed, lowered=lower(changed), backend="quick")
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: f"{file.parent.name}-{file.stem}")

@@ -35,7 +35,11 @@ class Model:
     flat: Flat
     lowered: Lowered
     recorded: tuple[str, ...]
-    backend: Backend = "llvm"
+    scene: tuple[ScenePart, ...]
+    """The parts of the scene of the diagram, over the signals by their full names."""
+    read_by_scene: tuple[str, ...]
+    """The signals that the scene reads: `record` of `compile` takes them."""
+    backend: Backend
 
     def __repr__(self) -> str:  # with its diagram and library it would fill many screens
         shown = f"states {', '.join(self.states) or 'none'}; {len(self.parameters)} parameters"
@@ -147,16 +151,6 @@ class Model:
         """Whether a signal is read as it was some time ago."""
         return bool(self.lowered.delays) or self.lowered.shifts
 
-    @cached_property
-    def scene(self) -> tuple[ScenePart, ...]:
-        """The parts of the scene of the diagram, over the signals by their full names."""
-        return resolve_scene(self.diagram, self.flat.shapes)[0]
-
-    @cached_property
-    def read_by_scene(self) -> tuple[str, ...]:
-        """The signals that the scene of the diagram reads: `record` of compile takes them."""
-        return resolve_scene(self.diagram, self.flat.shapes)[1]
-
     @property
     def modes(self) -> Sequence[Mode]:
         """The modes of the model and their guards."""
@@ -242,7 +236,7 @@ def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "ll
     if backend not in BACKENDS:
         raise OptionError([unknown("backend", backend, BACKENDS)])
     flat = flatten(diagram)
-    resolve_scene(diagram, flat.shapes)
+    scene, read_by_scene = resolve_scene(diagram, flat.shapes)
     lowered = lower(flat)
     known = [
         *(state.name for state in flat.states),
@@ -257,5 +251,6 @@ def compile(diagram: Diagram, record: Sequence[str] = (), backend: Backend = "ll
     wrong = [name for name in record if name not in more or not there.issuperset(more[name])]
     if wrong:
         raise OptionError([unknown("signal", name, known) for name in dict.fromkeys(wrong)])
-    recorded = (*flat.record, *(element for elements in more.values() for element in elements))
-    return Model(diagram, flat, lowered, tuple(dict.fromkeys(recorded)), backend)
+    names = (*flat.record, *(element for elements in more.values() for element in elements))
+    recorded = tuple(dict.fromkeys(names))
+    return Model(diagram, flat, lowered, recorded, scene, read_by_scene, backend)

@@ -109,4 +109,4 @@ def _model(model: Model, flat: Flat) -> Model:
     places = {name: block.place for name, block in flat.blocks.items()}
     signals, loops = order_signals(flat.signals, flat.guesses, flat.blocks, places)
     flat = replace(flat, signals=signals, loops=loops)
-    return Model(model.diagram, flat, lower(flat), model.recorded, model.backend)
+    return replace(model, flat=flat, lowered=lower(flat))
