@@ -125,26 +125,22 @@ class Integrator:
         progress = self.arrays.progress
         progress.now[END] = end
         library()  # before the clock of the run begins
-        self._go_on()
+        if self.stop_flag is not None:
+            if not self.advance(self.stop_flag):
+                raise self.interrupted()
+        else:
+            with until_interrupted() as stop_flag:
+                try:
+                    self.advance(stop_flag)
+                except SimulationError:
+                    if not stop_flag.asked:
+                        raise
+            if stop_flag.asked:  # whatever became of the run: the user wants to stop
+                raise self.interrupted()
         if (progress.overlooked == BEYOND).any():
             raise starts_beyond(self.model, progress, self.problem.start, self.begin)
         if end < self.problem.span[1]:  # the core takes the stop for the end of all samples
             progress.ints[SAMPLED] = np.searchsorted(progress.times, end, side="right")
-
-    def _go_on(self) -> None:
-        """Integrate to the stop; Ctrl-C is heard here unless there is a `stop_flag`."""
-        if self.stop_flag is not None:
-            if not self.advance(self.stop_flag):
-                raise self.interrupted()
-            return
-        with until_interrupted() as stop_flag:
-            try:
-                self.advance(stop_flag)
-            except SimulationError:
-                if not stop_flag.asked:
-                    raise
-        if stop_flag.asked:  # whatever became of the run: the user wants to stop
-            raise self.interrupted()
 
     def interrupted(self) -> Interrupted:
         """The error of a run that the user stopped."""
