@@ -226,6 +226,17 @@ def test_a_diagram_from_stdin_is_checked(
         assert ("<stdin>:" in result.err) == (code == 2)
 
 
+def test_a_diagram_from_stdin_is_run_and_has_no_file_to_change(
+    call: Any, swing: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(swing.parent)
+    for arguments, code in ((("run", "-"), 0), (("fit", "-", "--apply"), 2)):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(swing.read_bytes())))
+        result = call(*arguments)
+        assert result.code == code
+        assert ("this one comes from stdin" in result.err) == (code == 2)
+
+
 def test_units_are_listed_and_explained(call: Any) -> None:
     listed = call("units")
     assert "\nacceleration:  m/s^2, " in listed.out

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.options import AsJson, Debug, DiagramPath, SeriesName, read_series
+from tracewire.cli.options import AsJson, Debug, DiagramPath, SeriesName, read_diagram, read_series
 from tracewire.cli.output import check_target, note, print_json, print_text, telling, working
 from tracewire.cli.records import Given, Span
 from tracewire.cli.setting import Rtol
@@ -57,12 +57,11 @@ def animate(
         import numpy as np
 
         from tracewire.compile import compile
-        from tracewire.diagram import read
         from tracewire.show import animate as film_of
         from tracewire.show import frame_times
         from tracewire.solve import Options, even_times, parameter_values, simulate, with_options
 
-        plain = compile(read(diagram, given.library or ()))
+        plain = compile(read_diagram(diagram, given.library))
         model = compile(plain.diagram, plain.read_by_scene)
     conditions, _ = read_series(model, series)
     own = Options(

@@ -150,7 +150,7 @@ def fit(
 
     check_targets(target.report, target.output)
     model = load_model(diagram, library)
-    check_home(model.diagram, target.output)
+    check_home(model.diagram, target.output, target.apply)
     options = _options(limits.options, course.plot)
     parameters = parameter_values_of(model, search.values or [])
     with working("fitting") as tell:

@@ -18,7 +18,10 @@ if TYPE_CHECKING:
     from tracewire.solve import Options
 
 DiagramPath = Annotated[
-    str, typer.Argument(metavar="DIAGRAM", help="A diagram file (YAML).", show_default=False)
+    str,
+    typer.Argument(
+        metavar="DIAGRAM", help="A diagram file (YAML); - is stdin.", show_default=False
+    ),
 ]
 Libraries = Annotated[
     list[str] | None,
@@ -55,15 +58,12 @@ def read_diagram(path: str, libraries: Sequence[str] | None = None) -> Diagram:
 def load_model(
     path: str, libraries: Sequence[str] | None = None, record: Sequence[str] | None = None
 ) -> Model:
-    """The compiled model of a diagram file; units that contradict each other are told on stderr.
-
-    Raises DiagramError, BlockError, OptionError.
-    """
+    """The compiled model of what `read_diagram` reads; units that contradict each other are told on
+    stderr. Raises DiagramError, BlockError, OptionError."""
     with working(f"compiling {path}"):
         from tracewire.compile import compile
-        from tracewire.diagram import read
 
-        model = compile(read(path, libraries or ()), record or ())
+        model = compile(read_diagram(path, libraries), record or ())
     note_units(model)
     return model
 

@@ -104,8 +104,14 @@ def check_targets(
     check_target(table, (".csv",), "table")
 
 
-def check_home(diagram: Diagram, output: str | None) -> None:
-    """Refuse, before the work, a folder from which files of the diagram are not found."""
+def check_home(diagram: Diagram, output: str | None, apply: bool) -> None:
+    """Refuse, before the work, a folder from which files of the diagram are not found, and a change
+    of a diagram that has no file. Raises OptionError."""
+    from tracewire.diagram import STDIN
+
+    if apply and diagram.file == STDIN:
+        what = "--apply changes the file of the diagram, and this one comes from stdin"
+        raise OptionError.one(what, hint="Write it to another file: --output new.yaml.")
     if output is not None and not output.endswith(".patch"):
         from tracewire.diagram import text_at
 

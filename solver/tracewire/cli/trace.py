@@ -131,7 +131,7 @@ def trace(
     options = asked.options
     model = load_model(diagram, library)
     own = model.diagram
-    check_home(own, targets.output)
+    check_home(own, targets.output, targets.apply)
     model = _with_files(model, {use: getattr(files, use) for use in ("train", "gate", "validate")})
     check_options(options, model)
     with executor_at(executor) as pool, working("tracing") as tell:
