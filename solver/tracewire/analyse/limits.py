@@ -8,6 +8,19 @@ from __future__ import annotations
 from typing import Final
 
 
+class StabilityLimits:
+    """Where eigenvalues and multipliers decide nothing."""
+
+    on_axis: Final[float] = 1e-9
+    """Of the largest eigenvalue, or of 1/s: a real part that is nearer to zero."""
+    on_circle: Final[float] = 1e-4
+    """From the unit circle: a multiplier that is nearer. Where two of them meet there an error e of
+    the monodromy moves them by sqrt(e)."""
+
+
+STABILITY = StabilityLimits()
+
+
 class EquilibriumLimits:
     """Of Newton's method inside the active mode, and of the linear system that is found there."""
 

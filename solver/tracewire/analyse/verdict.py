@@ -6,32 +6,25 @@ from typing import Literal
 
 import numpy as np
 
+from tracewire.analyse.limits import STABILITY
 from tracewire.array_types import Complexes
 
 Verdict = Literal["stable", "unstable", "neutral"]
 
 
-def of_eigenvalues(eigenvalues: Complexes, tolerance: float = 1e-9) -> Verdict:
-    """Stable where every real part is below zero, unstable where one is above it, else neutral.
-
-    `tolerance` is relative to the largest eigenvalue.
-    """
+def of_eigenvalues(eigenvalues: Complexes) -> Verdict:
+    """Stable where every real part is below zero, unstable where one is above it, else neutral."""
     if not len(eigenvalues):
         return "stable"
-    return _of(
-        float(eigenvalues.real.max()), tolerance * max(float(np.abs(eigenvalues).max()), 1.0)
-    )
+    largest = max(float(np.abs(eigenvalues).max()), 1.0)
+    return _of(float(eigenvalues.real.max()), STABILITY.on_axis * largest)
 
 
-def of_multipliers(multipliers: Complexes, tolerance: float = 1e-4) -> Verdict:
-    """Stable where all |multipliers| are below 1, unstable where one is above it, else neutral.
-
-    Where two multipliers meet on the unit circle an error e of the monodromy moves them by sqrt(e):
-    within `tolerance` of the circle nothing is decided.
-    """
+def of_multipliers(multipliers: Complexes) -> Verdict:
+    """Stable where all |multipliers| are below 1, unstable where one is above it, else neutral."""
     if not len(multipliers):
         return "stable"
-    return _of(float(np.abs(multipliers).max()) - 1.0, tolerance)
+    return _of(float(np.abs(multipliers).max()) - 1.0, STABILITY.on_circle)
 
 
 def _of(largest: float, tolerance: float) -> Verdict:

@@ -120,6 +120,8 @@ class CheckOptions:
     """Steps of a fit with a mistake undone."""
     lag_hopeful: float = 5.0
     """How many times less is left at a lag beside which others are tried."""
+    lag_likely: int = 3
+    """The likely lags from which a search begins, at most."""
     lag_better: float = 0.9
     """The part of the squared error that a step of the lag must leave, at most, to go on."""
     lag_steps: int = 10

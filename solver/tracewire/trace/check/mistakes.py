@@ -195,7 +195,7 @@ def shift_inputs(m: Measured, lag: float) -> Measured:
     return replace(m, inputs=later)
 
 
-def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3) -> list[float]:
+def likely_lags(model: Model, m: Measured, options: CheckOptions) -> list[float]:
     """The lags in s by which the response may follow the inputs, the most likely first.
 
     Where the accelerations are explained best by a polynomial of the signals, their rates, and the
@@ -221,7 +221,8 @@ def likely_lags(model: Model, m: Measured, options: CheckOptions, most: int = 3)
     rest = np.array(left)
     lowest = np.flatnonzero((rest[1:-1] <= rest[:-2]) & (rest[1:-1] <= rest[2:])) + 1
     found = []
-    for i in sorted(lowest, key=lambda i: rest[i])[:most]:  # the vertex of a parabola through three
+    likely = sorted(lowest, key=lambda i: rest[i])[: options.lag_likely]
+    for i in likely:  # the vertex of a parabola through three
         bend = rest[i - 1] - 2 * rest[i] + rest[i + 1]
         off = 0.5 * (rest[i - 1] - rest[i + 1]) / bend if bend > 0 else 0.0
         found.append(float(lags[i] + off * step))

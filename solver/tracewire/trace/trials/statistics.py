@@ -37,14 +37,14 @@ def inverse_information(slopes: Matrix) -> tuple[Matrix, Vector]:
     return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)), sizes
 
 
-def flat_values(slopes: Matrix, least: float = 1e-12, part: float = 0.1) -> NDArray[np.bool_]:
-    """Which values (n,) take part, by more than a `part`, in a direction along which residuals with
-    slopes (M, n) stay as they are: its information is below `least` of the largest."""
+def flat_values(slopes: Matrix) -> NDArray[np.bool_]:
+    """Which values (n,) take part in a direction along which residuals with slopes (M, n) stay as
+    they are."""
     sizes = np.linalg.norm(slopes, axis=0)
     scaled = slopes / np.where(sizes > 0, sizes, 1.0)
     information, directions = np.linalg.eigh(scaled.T @ scaled)
-    flat = directions[:, information < least * max(float(information[-1]), 1e-300)]
-    return np.asarray((np.abs(flat) > part).any(axis=1) | (sizes == 0))
+    flat = directions[:, information < ROUNDING.flat * max(float(information[-1]), 1e-300)]
+    return np.asarray((np.abs(flat) > ROUNDING.in_flat).any(axis=1) | (sizes == 0))
 
 
 def errors_behind(residuals: Sequence[Vector], others: Sequence[Vector], blocks: int) -> float:
@@ -65,8 +65,8 @@ def bic(rss: float, count: int, effective_fraction: float, unknowns: int) -> flo
     )
 
 
-def orthonormal(columns: Matrix, least: float = 1e-8) -> Matrix:
-    """An orthonormal basis of columns (M, K), without directions less than a part of the strongest.
+def orthonormal(columns: Matrix) -> Matrix:
+    """An orthonormal basis of columns (M, K), without directions that are only rounding.
 
     The columns count alike, whatever their sizes; those that are zero do not.
     """
@@ -75,7 +75,7 @@ def orthonormal(columns: Matrix, least: float = 1e-8) -> Matrix:
     if not kept.size:
         return np.zeros((len(columns), 0))
     left, singular, _ = np.linalg.svd(kept, full_matrices=False)
-    return np.asarray(left[:, singular > least * singular[0]])
+    return np.asarray(left[:, singular > ROUNDING.direction * singular[0]])
 
 
 @dataclass(frozen=True, eq=False)
