@@ -109,7 +109,7 @@ def _started(run: Callable[..., None], *arguments: Any) -> Thread:
 
 
 def _begin() -> None:
-    with LOCK, suppress(Exception):
+    with LOCK, suppress(Exception):  # it comes again, and is told, where a layout is asked for
         _context()
 
 

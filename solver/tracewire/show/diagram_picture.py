@@ -85,7 +85,7 @@ def _needed(found: Found, places: set[str]) -> Mapping[str, Needed]:
 def _forces(found: Found) -> tuple[Force, ...]:
     try:
         return found.forces
-    except Exception:  # the figure of the forces tells why, and this one shows the diagram
+    except Exception:  # of any kind: the figure of the forces tells why, this one the diagram
         return ()
 
 

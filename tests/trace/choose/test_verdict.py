@@ -9,10 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 import tracewire as tw
+from tracewire.errors import FitError
 from tracewire.trace.choose import verdict
 from tracewire.trace.choose.finalists import _extend_without, _takes_all
 from tracewire.trace.choose.remainder import error_left
-from tracewire.trace.choose.verdict import _only_uncommon, is_slow_noise, judge_at_noise
+from tracewire.trace.choose.verdict import (
+    _only_uncommon,
+    is_at_noise,
+    is_slow_noise,
+    judge_at_noise,
+)
 from tracewire.trace.options import TraceOptions
 from tracewire.trace.trials import bounds
 from tracewire.trace.trials.bounds import AtBound
@@ -55,6 +61,34 @@ def test_several_waves_or_drifts_and_nothing_else_are_no_effect() -> None:
     assert _only_uncommon(model("parametric", "stiffness_drift"), options)
     assert not _only_uncommon(model("parametric"), options)
     assert not _only_uncommon(model("parametric", "coulomb"), options)
+
+
+@pytest.mark.parametrize(
+    ("names", "subject"),
+    [((), "the declared model"), (("coulomb @ net",), "a model with coulomb @ net")],
+)
+def test_a_model_at_the_noise_that_does_not_run_in_longer_windows_is_told(
+    names: tuple[str, ...], subject: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refit(*_: Any) -> Any:
+        raise FitError.one("'spring' is not finite")
+
+    monkeypatch.setattr(verdict, "_gate_mean_square", lambda search, best: 1.0)
+    trial: Any = SimpleNamespace(reduced_chi2=1.0, degrees_of_freedom=100, length=16, effects=names)
+    words: list[str] = []
+    search: Any = SimpleNamespace(
+        options=TraceOptions(),
+        short_length=48,
+        windows=lambda sections, length: [],
+        data_split=SimpleNamespace(train=()),
+        problem=SimpleNamespace(refit=refit),
+        note=words.append,
+    )
+    assert is_at_noise(search, trial)
+    assert words == [
+        f"in windows of 16 samples {subject} leaves no more than the noise; in longer ones it does"
+        " not run: 'spring' is not finite"
+    ]
 
 
 def test_blocks_at_the_noise_do_not_count_in_what_an_effect_leaves() -> None:

@@ -47,7 +47,7 @@ def scale_of(
         given["t"] = abs(part) * duration / 2
         try:
             squares.append(_output(kind, numbers, given) ** 2)
-        except (TracewireError, ArithmeticError, ValueError, KeyError):
+        except (TracewireError, ArithmeticError, KeyError):
             continue
     found = math.sqrt(sum(squares) / len(squares)) / at if squares else 0.0
     return whole / found if math.isfinite(found) and found > 0 else whole

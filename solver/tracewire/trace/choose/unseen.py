@@ -262,5 +262,6 @@ def join_names(names: Iterable[str]) -> str:
 
 
 def model_with(names: Iterable[str]) -> str:
-    """The diagram with some effects, in words."""
-    return f"a model with {join_names(names)}"
+    """The diagram with some effects, or with none, in words."""
+    joined = join_names(names)
+    return f"a model with {joined}" if joined else "the declared model"

@@ -92,7 +92,12 @@ def is_at_noise(search: Search, trial: Trial) -> bool:
         windows = search.windows(search.data_split.train, search.short_length)
         try:
             longer = search.problem.refit(trial, windows, search.short_length)
-        except FitError:
+        except FitError as error:  # nor can models be compared by what they predict there
+            names, what = list(map(str, trial.effects)), error.problems[0].what
+            search.note(
+                f"in windows of {trial.length} samples {model_with(names)} leaves no more than the"
+                f" noise; in longer ones it does not run: {what}"
+            )
             return True
         if longer.reduced_chi2 > search.options.lost:
             return False
