@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import pytest
 import typer
 from tracewire.cli.app import VERBS
-from tracewire.cli.records import Given, PeriodOptions, with_fields
+from tracewire.cli.records import Given, MotionPeriod, with_fields
 from typer.testing import CliRunner
 
 
@@ -62,7 +62,7 @@ def test_a_command_without_records_has_its_arguments() -> None:
 
 def test_records_are_values_that_can_be_made_in_python() -> None:
     assert Given(preset="slow") == Given("slow", None, None, None)
-    assert PeriodOptions("2*pi/w", "0.5").times == ("2*pi/w", 0.5)
+    assert MotionPeriod("2*pi/w", "0.5").times == ("2*pi/w", 0.5)
 
 
 @pytest.mark.parametrize("verb", [verb for verb in VERBS if verb != "analyse"])

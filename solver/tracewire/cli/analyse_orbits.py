@@ -9,7 +9,7 @@ import typer
 from tracewire.cli.executors import executor_at
 from tracewire.cli.options import DiagramPath
 from tracewire.cli.output import telling, working
-from tracewire.cli.records import FigureTarget, Given, PeriodOptions, Target, Work
+from tracewire.cli.records import FigureTarget, Given, MotionPeriod, Target, Work
 from tracewire.cli.setting import Modulo, Rtol, TwoStates, read_setting, tell
 from tracewire.errors import OptionError, Problem
 
@@ -17,7 +17,7 @@ from tracewire.errors import OptionError, Problem
 def orbit(
     diagram: DiagramPath,
     *,
-    motion: PeriodOptions,
+    motion: MotionPeriod,
     skip: Annotated[
         int, typer.Option(metavar="N", help="Periods to simulate before the search begins.")
     ] = 0,
@@ -61,7 +61,7 @@ def orbit(
 def floquet(
     diagram: DiagramPath,
     *,
-    motion: PeriodOptions,
+    motion: MotionPeriod,
     given: Given,
     rtol: Rtol = 1e-10,
     target: Target,
@@ -103,7 +103,7 @@ def chart(
             help="A parameter and its values; give two, first across, then up.",
         ),
     ],
-    motion: PeriodOptions,
+    motion: MotionPeriod,
     given: Given,
     rtol: Rtol = 1e-9,
     work: Work,

@@ -11,11 +11,11 @@ import typer
 from tracewire.cli.output import Cut, check_target, flush, print_json, print_parts, print_text
 from tracewire.cli.reporting import (
     Apply,
-    Attempts,
     Output,
     PatchFile,
     ReportFile,
     TableFile,
+    WriteAttempts,
     check_targets,
     patch_of,
     store,
@@ -67,7 +67,7 @@ def deliver(found: Found, model: Model, own: Diagram, targets: Targets, as_json:
     from being written. Raises TracewireError for those, after all is done, and Cut where the trace
     was interrupted.
     """
-    attempt = Attempts()
+    attempt = WriteAttempts()
     if not as_json:
         from tracewire.show import present
 

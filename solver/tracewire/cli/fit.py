@@ -13,9 +13,9 @@ from tracewire.cli.options import AsJson, Debug, DiagramPath, Libraries, load_mo
 from tracewire.cli.output import Cut, note, print_json, print_parts, print_text, working
 from tracewire.cli.reporting import (
     Apply,
-    Attempts,
     Output,
     ReportFile,
+    WriteAttempts,
     check_home,
     check_targets,
     store,
@@ -33,7 +33,7 @@ PLOTS = "fit_frames"
 
 
 @dataclass(frozen=True)
-class Search:
+class FitGiven:
     """What is fitted, and how: arguments of `tracewire.fit`."""
 
     method: Annotated[
@@ -127,7 +127,7 @@ class FitTarget:
 def fit(
     diagram: DiagramPath,
     *,
-    search: Search,
+    given: FitGiven,
     limits: Limits,
     course: Course,
     target: FitTarget,
@@ -152,16 +152,16 @@ def fit(
     model = load_model(diagram, library)
     check_home(model.diagram, target.output, target.apply)
     options = _options(limits.options, course.plot)
-    parameters = parameter_values_of(model, search.values or [])
+    parameters = parameter_values_of(model, given.values or [])
     with working("fitting") as tell:
         found = fit_model(
             model,
-            method=search.method,
-            free=search.free or None,
-            fixed=search.fix or (),
+            method=given.method,
+            free=given.free or None,
+            fixed=given.fix or (),
             parameters=parameters,
             options=options,
-            loss=search.loss,
+            loss=given.loss,
             seed=course.seed,
             rtol=course.rtol,
             save=course.save,
@@ -178,7 +178,7 @@ def fit(
                 note(f"the profile of {name} was interrupted")
                 cut = True
                 break
-    attempt = Attempts()
+    attempt = WriteAttempts()
 
     def edited() -> Diagram:
         return patch(model.diagram, [SetValues(found.values)])

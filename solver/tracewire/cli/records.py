@@ -185,7 +185,7 @@ class PlaneOptions:
 
 
 @dataclass(frozen=True)
-class PeriodOptions:
+class MotionPeriod:
     """The period of a motion and when it begins."""
 
     period: Annotated[

@@ -53,7 +53,7 @@ Output = Annotated[
 ]
 
 
-class Attempts:
+class WriteAttempts:
     """Writes the files of a result one by one: one that fails does not keep the others from it."""
 
     def __init__(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracewire.array_types import Vector
-from tracewire.data.limits import STEP
+from tracewire.data.limits import CLEANING
 
 NORMAL = 1.4826  # a normal distribution's standard deviation over its median absolute deviation
 FOURTH = 70.0  # 1 + 16 + 36 + 16 + 1: the variance of a fourth difference of white noise of 1
@@ -96,7 +96,7 @@ def derivative(t: Vector, y: Vector, noise: float) -> tuple[Vector, float]:
         left = smooth(u, z, 10.0**logarithm) - z
         return float(np.sqrt(np.mean(left**2))) - noise / scale
 
-    low, high = STEP.logarithms
+    low, high = CLEANING.logarithms
     if excess(low) >= 0:
         best = low
     elif excess(high) <= 0:
@@ -118,7 +118,7 @@ def far_from_median(y: Vector, width: int, limit: float) -> NDArray[np.bool_]:
     half = width // 2
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(y, half, mode="reflect"), width)
     median, spread = np.empty_like(y), np.empty_like(y)
-    rows = max(STEP.most_at_once // width, 1)
+    rows = max(CLEANING.most_at_once // width, 1)
     for first in range(0, len(y), rows):
         part = windows[first : first + rows]
         middle = np.median(part, axis=1)

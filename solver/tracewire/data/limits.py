@@ -34,7 +34,7 @@ class FileLimits:
 FILE = FileLimits()
 
 
-class StepLimits:
+class CleaningLimits:
     """Of the steps that clean a record."""
 
     most_samples: Final[int] = 20_000_000
@@ -52,7 +52,7 @@ class StepLimits:
     """Samples of all windows whose medians are taken together: 16 MB."""
 
 
-STEP = StepLimits()
+CLEANING = CleaningLimits()
 
 
 class CheckLimits:

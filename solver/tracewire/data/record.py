@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tracewire.array_types import Vector
 from tracewire.data import filters
-from tracewire.data.limits import FILE, STEP
+from tracewire.data.limits import CLEANING, FILE
 from tracewire.data.steps import STEPS
 from tracewire.errors import OptionError, unknown
 from tracewire.formula import Unit, read_unit
@@ -137,7 +137,7 @@ class Record:
             raise OptionError([unknown("method of resampling", method, ("linear", "spline"))])
         every = _above_zero("every", every)
         span = float(self.t[-1] - self.t[0])
-        few = span / every < STEP.most_samples
+        few = span / every < CLEANING.most_samples
         count = math.floor(span / every * (1 + 1e-12)) + 1 if few else 0
         if count < 2:
             what = f"the interval {every:g} s does not fit into a record of {span:g} s"
@@ -154,7 +154,7 @@ class Record:
 
         order 0 takes the mean away, 1 a straight line.
         """
-        order = _count("order", order, 0, STEP.most_order)
+        order = _count("order", order, 0, CLEANING.most_order)
         if len(self.t) <= order:
             raise OptionError.one(f"a trend of order {order} takes more than {len(self.t)} samples")
         words = {0: "the mean", 1: "a straight line"}.get(order, f"a polynomial of order {order}")
@@ -187,9 +187,12 @@ class Record:
 
         cutoff: Hz, where the gain of both ways together is 1/2. Needs equal intervals.
         """
-        cutoff, order = _above_zero("cutoff", cutoff), _count("order", order, 1, STEP.most_order)
+        cutoff, order = (
+            _above_zero("cutoff", cutoff),
+            _count("order", order, 1, CLEANING.most_order),
+        )
         step, uneven = filters.jitter(self.t)
-        if uneven > STEP.uniform:
+        if uneven > CLEANING.uniform:
             what = f"a filter needs equal intervals; these are up to {uneven:.0%} off {step:g} s"
             raise OptionError.one(what, hint=f"Resample first: resample: {{every: {step:.4g}}}.")
         half = 0.5 / step
@@ -218,8 +221,8 @@ class Record:
         if to in self.columns:
             raise OptionError.one(f"there is a column '{to}' already", hint="Choose another name.")
         y = self._column(signal)
-        if len(self.t) < STEP.fewest_for_spline:
-            raise OptionError.one(f"a spline takes at least {STEP.fewest_for_spline} samples")
+        if len(self.t) < CLEANING.fewest_for_spline:
+            raise OptionError.one(f"a spline takes at least {CLEANING.fewest_for_spline} samples")
         size = filters.white_noise(y) if noise is None else _above_zero("noise", noise)
         made, rest = filters.derivative(self.t, y, size)
         unit = self.unit(signal)

@@ -48,11 +48,11 @@ class BatchSizes:
 BATCH = BatchSizes()
 
 
-class ReadingLimits:
+class MessageLimits:
     """Of what a reader is told."""
 
     most_names: Final[int] = 6
     """Places, or blocks, that one sentence names."""
 
 
-READING = ReadingLimits()
+MESSAGE = MessageLimits()

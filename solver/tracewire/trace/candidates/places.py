@@ -18,7 +18,7 @@ from tracewire.trace.candidates.inside import (
     local_name,
     rows_of_sums,
 )
-from tracewire.trace.limits import READING
+from tracewire.trace.limits import MESSAGE
 
 PASSED = ("sum", "gain", "divide")
 
@@ -102,7 +102,7 @@ def find_places(model: Model) -> list[Place]:
 
 def _shown(names: Sequence[str]) -> str:
     """Some names, the first of them where they are many."""
-    return ", ".join(names[: READING.most_names]) + " ..." * (len(names) > READING.most_names)
+    return ", ".join(names[: MESSAGE.most_names]) + " ..." * (len(names) > MESSAGE.most_names)
 
 
 def describe_no_sum(model: Model, places: Sequence[Place]) -> list[str]:
