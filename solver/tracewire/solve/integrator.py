@@ -245,24 +245,20 @@ class Integrator:
     @property
     def run(self) -> Run:
         """The run as far as it is."""
-        progress = self.arrays.progress
-        count = int(progress.ints[SAMPLED])
-        return self.run_at(self.problem.times[:count], progress.samples[:count])
-
-    def run_at(self, t: Vector, samples: Matrix) -> Run:
-        """The run with these sample times (N,) and samples (N, signals)."""
-        problem, model, names = self.problem, self.model, self.model.states
-        answers, log = self.arrays.sensitivity.samples[: len(t)], self.log.copy()
+        problem, model, progress = self.problem, self.model, self.arrays.progress
+        names, count = model.states, int(progress.ints[SAMPLED])
+        samples = progress.samples[:count, : len(model.recorded)]  # states may stand behind them
+        answers, log = self.arrays.sensitivity.samples[:count], self.log.copy()
         inputs = problem.given.get("inputs") or {}
         return Run(
             title=model.flat.title,
-            t=t,
+            t=problem.times[:count],
             signals=dict(zip(model.recorded, samples.T.copy(), strict=True)),
             units=_units_of(model),
             events=EventLog(lambda: log.events),
             parameters=problem.parameters,
             start=dict(zip(names, problem.start.tolist(), strict=True)),
-            final=dict(zip(names, self.arrays.progress.x.tolist(), strict=True)),
+            final=dict(zip(names, progress.x.tolist(), strict=True)),
             statistics=self.statistics,
             warnings=(*self.warnings, *unknown_parts(inputs, *problem.span)),
             shown=model.flat.shown,

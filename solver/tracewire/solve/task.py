@@ -125,7 +125,9 @@ class Task:
         refuse_nan(model, samples, times)
         criterion = np.empty(0)
         if self.criterion is not None:
-            criterion = criterion_of(self.criterion, integrator.run_at(times, samples))
+            signals = dict(zip(model.recorded, samples.T.copy(), strict=True))
+            run = replace(integrator.run, t=times, signals=signals)
+            criterion = criterion_of(self.criterion, run)
         kept = samples if self.sampled else np.empty((0, columns))
         t = times if self.sampled else np.empty(0)
         events = len(integrator.log)
