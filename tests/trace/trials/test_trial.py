@@ -23,7 +23,7 @@ from tracewire.errors import DiagramError, FitError
 from tracewire.residual import Measured
 from tracewire.residual.windows import Section, cut_windows
 from tracewire.trace.trials.placed_effect import PlacedEffect
-from tracewire.trace.trials.trial import with_fitted_starts
+from tracewire.trace.trials.trial import TraceProblem, Trial, with_fitted_starts
 
 COULOMB = "coulomb @ force"
 
@@ -148,6 +148,21 @@ def test_a_diagram_that_does_not_run_is_told_with_its_block() -> None:
     text = DIAGRAM.replace("k: -k}", "k: -k/(c - c)}")
     with pytest.raises(FitError, match="'spring' is not finite"):
         trial_of(problem_of(record(end=3.0), text=text))
+
+
+def test_a_refit_of_what_does_not_run_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fit(*_: object, **__: object) -> Trial:
+        raise FitError.one("'spring' is not finite")
+
+    problem = problem_of(record(end=3.0))
+    trial = trial_of(problem)
+    again = problem.try_refit(trial)
+    assert again is not None and again.length == trial.length
+    assert again.values == pytest.approx(trial.values, rel=1e-3)
+    monkeypatch.setattr(TraceProblem, "fit", fit)
+    assert problem.try_refit(trial) is None
+    with pytest.raises(FitError, match="'spring' is not finite"):
+        problem.refit(trial)
 
 
 def test_a_model_that_takes_too_many_events_is_given_up() -> None:
