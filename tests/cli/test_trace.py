@@ -42,7 +42,7 @@ measured:
 LEVEL = 0.8
 
 
-APPLIED = "coulomb:      {type: coulomb, rate: omega, level: {value: "
+APPLIED = "coulomb: {type: coulomb, rate: omega, level: {value: "
 
 
 def write_record(folder: Path) -> None:
