@@ -40,9 +40,10 @@ def unit_problems(flat: Flat) -> list[Problem]:
 
 
 def has_units(flat: Flat) -> bool:
-    """Whether a parameter of the diagram, or a signal, has a unit."""
+    """Whether a parameter of the diagram, a signal, or a value in its text has a unit."""
     own = (parameter.unit for name, parameter in flat.parameters.items() if "." not in name)
-    return any((*own, *flat.units.values()))
+    written = (asked.given for asked in flat.asked)
+    return any((*own, *written, *flat.units.values()))
 
 
 def complete_units(flat: Flat) -> dict[str, str]:
@@ -161,20 +162,31 @@ class _Units:
         self.note(f"{self.said(Name(name), own)}, and {made_of}")
 
     def as_asked(self, asked: FlatAsked) -> None:
-        """The unit of a value of a block is that of its declaration."""
+        """The unit of a value is that of what takes it."""
         given, like = self.term(asked.formula), asked.like
         wanted = dimension_of(asked.unit) if like is None else self.term(like)
-        if given is None or wanted is None:
+        if wanted is None:
             return
-        written = self.text(given, asked.formula)
+        if given is not None:
+            written = self.text(given, asked.formula)
+            self.as_wanted(asked, self.said(asked.formula, given), given, written, wanted)
+        if asked.given and not isinstance(asked.formula, Name):
+            given, said = _dimension(asked.given), f"'{asked.name}' is in {asked.given}"
+            self.as_wanted(asked, said, given, asked.given, wanted)
+
+    def as_wanted(
+        self, asked: FlatAsked, said: str, given: Term, written: str, wanted: Term
+    ) -> None:
+        """Of a value in the unit `given`, which is `said` and `written` so."""
+        unit = asked.unit if asked.like is None else self.text(wanted, asked.like)
         if not self.agree(given, wanted):
-            unit = asked.unit if like is None else self.text(wanted, like)
-            self.note(f"{self.said(asked.formula, given)}, and the block takes it in {unit}")
-        elif _turns(written) and _turns(asked.unit) and _turns(written) != _turns(asked.unit):
+            self.note(f"{said}, and {asked.taker} takes it in {unit}")
+        elif _turns(written) and _turns(unit) and _turns(written) != _turns(unit):
             # both are 1/s: no other equation can tell them apart
-            hint = "1 Hz is 2*pi rad/s: write the value in the unit of the block."
-            what = f"{self.said(asked.formula, given)}, and the block takes it in {asked.unit}"
-            self.found.append(Problem(what, self.where, hint=hint))
+            hint = f"1 Hz is 2*pi rad/s: write the value in {unit}."
+            self.found.append(
+                Problem(f"{said}, and {asked.taker} takes it in {unit}", self.where, hint=hint)
+            )
 
     def integral(self, state: FlatState) -> None:
         """The unit of a rate is that of its state over time."""
@@ -247,6 +259,11 @@ class _Units:
 def _is_part(unit: str) -> bool:
     """Whether a user's unit says that a value is a plain number, as `%` does."""
     return bool(unit) and not read_unit(unit).text
+
+
+def _dimension(unit: str) -> Term:
+    """The dimension of a unit as a text writes it."""
+    return dimension_of(read_unit(unit).text) or {}
 
 
 def _turns(unit: str) -> str:

@@ -36,9 +36,10 @@ class FlatParameter:
 
 @dataclass(frozen=True)
 class FlatAsked:
-    """A value of a block whose declaration says its unit, by the full name of the parameter.
+    """A value whose unit something says: by the full name of a block's parameter, or by its key.
 
-    The unit is `unit`, or that of the signal `like`.
+    The unit is `unit`, or that of the signal or parameter `like`. `given` is the unit that the text
+    writes at the value, and `taker` what takes it.
     """
 
     name: str
@@ -46,6 +47,8 @@ class FlatAsked:
     unit: str = ""
     place: Location = Location()
     like: Expression | None = None
+    given: str = ""
+    taker: str = "the block"
 
 
 @dataclass(frozen=True)
@@ -145,7 +148,7 @@ class Flat:
     `shapes` holds the vectors, `(n,)`, and matrices, `(n, m)`, by name. `outputs` maps the names of
     subsystem ports and of blocks to the signal or state that they are. `require` holds what the
     parameters must meet, `shown` how signals are shown that have a label or a unit that is not SI.
-    `asked` has the values whose unit the declarations of blocks say.
+    `asked` has the values whose unit something says: the declarations of blocks, a clock, the span.
     """
 
     title: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from tracewire.compile.asked import asked_of_clock, asked_of_top, unit_text
 from tracewire.compile.continuous import ContinuousPort, jump_problems
 from tracewire.compile.curves import curve_tables
 from tracewire.compile.declared_events import (
@@ -122,6 +123,7 @@ class _Flattener:
         self.add_samples()
         self.refuse_jumps()
         scope = _Scope(top, "", inputs)
+        self.asked += asked_of_top(top, lambda value: self.value(value, scope))
         span = top.span or (Value(Number(0.0)), Value(Number(1.0)))
         record = tuple(top.record) or tuple(self.told) or tuple(self.states)
         return Flat(
@@ -253,6 +255,7 @@ class _Flattener:
 
             name = f"{path}events[{number}]"
             self.events += diagram_events(event, name, values, read, path, self.events)
+            self.asked += asked_of_clock(event, read)
             if event.every is not None and event.offset is not None:
                 every, offset = read(event.every), read(event.offset)
                 self.require += near_ticks(every, offset, event.place)
@@ -317,7 +320,9 @@ class _Flattener:
             given = use.settings.get(parameter.name)
             if isinstance(given, Value) and given.named and parameter.unit_of in names:
                 own, like = f"{path}.{parameter.name}", names[parameter.unit_of]
-                self.asked.append(FlatAsked(own, Name(own), place=given.place, like=like))
+                self.asked.append(
+                    FlatAsked(own, Name(own), place=given.place, like=like, given=unit_text(given))
+                )
 
         def written(formula: Expression) -> Expression:
             full = rename(write_wires(formula, manies), lambda name: names.get(name, Name(name)))
@@ -387,7 +392,8 @@ class _Flattener:
         formula = self.value(value, scope)
         if parameter.unit and (value.named or not isinstance(formula, Number)):
             meant = Name(name) if value.named else formula
-            self.asked.append(FlatAsked(name, meant, parameter.unit, value.place))
+            given = unit_text(value)
+            self.asked.append(FlatAsked(name, meant, parameter.unit, value.place, given=given))
         if not value.named:
             return formula
         unit = value.unit or parameter.unit
