@@ -40,10 +40,11 @@ def unit_problems(flat: Flat) -> list[Problem]:
 
 
 def has_units(flat: Flat) -> bool:
-    """Whether a parameter of the diagram, a signal, or a value in its text has a unit."""
+    """Whether a parameter of the diagram, a signal, a value in its text, or a table has a unit."""
     own = (parameter.unit for name, parameter in flat.parameters.items() if "." not in name)
     written = (asked.given for asked in flat.asked)
-    return any((*own, *written, *flat.units.values()))
+    axes = (unit for points in flat.tables.values() for unit in points.units)
+    return any((*own, *written, *axes, *flat.units.values()))
 
 
 def complete_units(flat: Flat) -> dict[str, str]:
@@ -92,6 +93,12 @@ class _Units:
                 self.known[OPEN + name] = dimension
             elif name in flat.shown and _is_part(flat.shown[name].unit):
                 self.known[OPEN + name] = {}
+        self.axes = {
+            f"{name}.{axis}": dimension_of(unit) or {}
+            for name, points in flat.tables.items()
+            for axis, unit in zip("xy", points.units, strict=True)
+            if unit is not None
+        }
 
     def problems(self) -> list[Problem]:
         for name, parameter in self.flat.parameters.items():
@@ -140,7 +147,7 @@ class _Units:
             return own if own is not None or number else self.term(parameter.formula)
         if name in self.states or name in self.flat.signals or OPEN + name in self.known:
             return {OPEN + name: 1.0}
-        return None
+        return self.axes.get(name)
 
     def together(self, one: Term, other: Term, left: Expression | None, right: Expression) -> None:
         """What a formula adds or compares, or takes for a number."""

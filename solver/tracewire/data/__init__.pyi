@@ -1,7 +1,7 @@
 from .checks import input_remarks, signal_remarks, time_remarks, usual_range
 from .frame import read_frame
 from .headings import Headings, read_headings
-from .read import Columns, column_unit, read_columns, read_record, record_of
+from .read import Columns, column_unit, read_columns, read_curve, read_record, record_of
 from .record import Record
 from .steps import STEPS, Option
 
@@ -14,6 +14,7 @@ __all__ = [
     "column_unit",
     "input_remarks",
     "read_columns",
+    "read_curve",
     "read_frame",
     "read_headings",
     "read_record",

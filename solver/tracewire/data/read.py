@@ -257,6 +257,43 @@ def record_of(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Two columns of a file in SI, of which x ascends; `units` has None where none is said."""
+
+    x: Vector
+    y: Vector
+    units: tuple[str | None, str | None]
+
+
+def read_curve(
+    path: str | Path,
+    x: str,
+    y: str,
+    units: tuple[str | None, str | None] = (None, None),
+    place: Location = Location(),
+) -> Curve:
+    """The columns x and y of a file, each in its unit of `units`, or else in that of its header.
+
+    Raises DataError as `read_columns` does, and where a header says another unit than `units`.
+    """
+    read = read_columns(path, {"y": y}, x, place=place)
+    said = _Said(read.file, place)
+    headers = (read.time_unit, read.units["y"])
+    used = [
+        said.unit(f"column '{name}'", declared, header)
+        for name, declared, header in zip((x, y), units, headers, strict=True)
+    ]
+    if said.problems:
+        raise DataError(said.problems)
+    known = [
+        unit.text if declared is not None or _unit_or_none(header or "-") is not None else None
+        for unit, declared, header in zip(used, units, headers, strict=True)
+    ]
+    scaled = (read.time * used[0].factor, read.values["y"] * used[1].factor)
+    return Curve(*scaled, (known[0], known[1]))
+
+
 class _Said:
     """What headers say of units, against what is declared."""
 

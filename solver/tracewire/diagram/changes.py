@@ -28,7 +28,7 @@ from tracewire.diagram.problems import Problems
 from tracewire.diagram.rewire import add_to_drive, readers_of, rewired, seen_name, sole_wire
 from tracewire.diagram.rewrite import as_written
 from tracewire.diagram.uses import check_bounds, check_conditions, in_unit_of, shape_of
-from tracewire.diagram.values import points_of_file
+from tracewire.diagram.values import Axis, points_of_file
 from tracewire.diagram.yaml_text import mapping_text, quote
 from tracewire.errors import DiagramError, Location, OptionError, unknown
 from tracewire.formula import Number, Unit, number_text, to_text
@@ -252,7 +252,8 @@ def _use(top: Diagram, inside: Diagram, change: AddBlock) -> BlockUse:
         if given is None and parameter.default is None:
             problems.add(f"parameter '{key}' is not given", place)
         elif isinstance(given, PointsFile):
-            given = points_of_file(top.file.parent / given.file, given.x, given.y, body, place)
+            path, x, y = top.file.parent / given.file, Axis(given.x), Axis(given.y)
+            given = points_of_file(path, x, y, body, place)
         if isinstance(given, Value) and isinstance(kind, Diagram):
             given = in_unit_of(given, kind.parameters[key])
         if given is not None:

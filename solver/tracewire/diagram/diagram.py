@@ -39,11 +39,15 @@ class Value:
 
 @dataclass(frozen=True)
 class Points:
-    """A table: points (x ascending, y), in SI, for interp()."""
+    """A table: points (x ascending, y), in SI, for interp().
+
+    `units` are those of x and y in SI where a file says them, '' of plain numbers; else None.
+    """
 
     x: tuple[float, ...]
     y: tuple[float, ...]
     place: Location = Location()
+    units: tuple[str | None, str | None] = (None, None)
 
 
 @dataclass(frozen=True)

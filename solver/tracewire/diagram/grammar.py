@@ -42,10 +42,15 @@ TIME = {
     "unit": Key(UNIT, "A unit of time, such as ms; s unless given."),
 }
 FIXED, FITTABLE = Named("value"), Named("fitted value")
+AXIS = {
+    "column": Key(TEXT, "The column of the file.", required=True),
+    "unit": Key(UNIT, "The unit of the column; that of the header unless given."),
+}
+_AXIS = Either((TEXT, Record(AXIS)))
 POINTS_FILE = {
     "file": Key(TEXT, "A file of measured points, relative to the diagram.", required=True),
-    "x": Key(TEXT, "The column of the abscissa.", required=True),
-    "y": Key(TEXT, "The column of the ordinate.", required=True),
+    "x": Key(_AXIS, "The column of the abscissa, or {column, unit}.", required=True),
+    "y": Key(_AXIS, "The column of the ordinate, or {column, unit}.", required=True),
 }
 INPUT = {
     "unit": Key(UNIT, "The unit of the signal, in which it is printed and drawn."),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
-from tracewire.data import read_columns
+from tracewire.data import read_curve
 from tracewire.diagram.body import Body, Reference, Sees
 from tracewire.diagram.diagram import Points, Value
-from tracewire.diagram.grammar import FITTED, POINTS_FILE, VALUE
+from tracewire.diagram.grammar import AXIS, FITTED, POINTS_FILE, VALUE
 from tracewire.diagram.problems import clip
 from tracewire.diagram.strict import Entries, Items, Node, Scalar
 from tracewire.errors import DataError, FormulaError, Location
@@ -185,20 +186,44 @@ def read_points(node: Node, body: Body, block: str) -> Points | None:
 def _points_of_columns(node: Entries, body: Body, block: str) -> Points | None:
     body.check_keys(node, POINTS_FILE, "key of a table", block)
     parts = [body.required(node, key, "a table from a file", block) for key in POINTS_FILE]
-    texts = [None if part is None else body.text(part, "it", block) for part in parts]
-    file, (_, x, y) = parts[0], texts
+    file, *columns = parts
+    if file is not None and body.text(file, "'file'", block) is None:
+        return None
+    x, y = (None if part is None else _axis(part, body, block) for part in columns)
     if not isinstance(file, Scalar) or x is None or y is None:
         return None
     return points_of_file(file.path, x, y, body, body.place(node, block))
 
 
-def points_of_file(path: Path, x: str, y: str, body: Body, place: Location) -> Points | None:
+def _axis(node: Node, body: Body, block: str) -> Axis | None:
+    """A column of a table: its name, or {column, unit}."""
+    if not isinstance(node, Entries):
+        name = body.text(node, "a column", block)
+        return None if name is None else Axis(name)
+    body.check_keys(node, AXIS, "key of a column", block)
+    given = body.required(node, "column", "a column of a table", block)
+    name = None if given is None else body.text(given, "'column'", block)
+    unit = None
+    if "unit" in node.values:
+        body.unit(node.values["unit"], block)
+        unit = body.text(node.values["unit"], "a unit", block)
+    return None if name is None else Axis(name, unit)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A column of a table, and its unit; None: that of the header."""
+
+    column: str
+    unit: str | None = None
+
+
+def points_of_file(path: Path, x: Axis, y: Axis, body: Body, place: Location) -> Points | None:
     """A table of points in two columns of a file."""
     try:
-        columns = read_columns(path, {"y": y}, x, place=place)
-    except DataError as error:
+        curve = read_curve(path, x.column, y.column, (x.unit, y.unit), place)
+    except (DataError, FormulaError) as error:
         body.problems.take(error)
         return None
-    # read_columns promises at least two rows, ascending
-    xs, ys = (tuple(column.tolist()) for column in (columns.time, columns.values["y"]))
-    return Points(xs, ys, place)
+    # read_curve promises at least two rows, ascending
+    return Points(tuple(curve.x.tolist()), tuple(curve.y.tolist()), place, curve.units)

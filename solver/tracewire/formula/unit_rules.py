@@ -41,7 +41,7 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
     if quantity is not None:
         return _of_quantity(node, quantity, named, equal, strict)
     if operation is not None and operation.reads:
-        return None
+        return _of_points(node, named, equal, strict) if operation.reads == "points" else None
     terms = [unit_term(argument, named, equal, strict) for argument in node.arguments]
     if node.function == "if":
         branches = list(zip(node.arguments[1:], terms[1:], strict=True))
@@ -75,6 +75,18 @@ def unit_term(node: Expression, named: Named, equal: Equal, strict: bool) -> Ter
         case "number":
             return _number(node, terms, equal)
     return None
+
+
+def _of_points(node: Call, named: Named, equal: Equal, strict: bool) -> Term | None:
+    """The unit of what a table gives; `named` has those of its axes as `NAME.x` and `NAME.y`."""
+    read, table = node.arguments
+    if not isinstance(table, Name):
+        return None
+    abscissa = Name(f"{table.name}.x")
+    of_read, of_x = unit_term(read, named, equal, strict), named(abscissa.name)
+    if of_read is not None and of_x is not None:
+        equal(of_read, of_x, read, abscissa)
+    return named(f"{table.name}.y")
 
 
 def _of_quantity(
