@@ -169,15 +169,20 @@ class Record:
     def calibrate(
         self, signal: str, gain: float = 1.0, offset: float = 0.0, unit: str = ""
     ) -> Record:
-        """The column y as gain*y + offset, numbers in `unit`, which are then put into SI."""
+        """The column y as gain*y + offset, numbers in `unit`, which are then put into SI.
+
+        Without `unit` they are in the unit that the column has, and stay in it.
+        """
         if gain == 0 or not (math.isfinite(gain) and math.isfinite(offset)):
             raise OptionError.one(f"the calibration {gain:g}*value + {offset:g} has no meaning")
-        made = read_unit(unit)
+        made = read_unit(unit) if unit else self.unit(signal)
+        text = unit or made.written or made.text
 
         def calibrated(name: str, y: Vector) -> tuple[Vector, str]:
             sign = "-" if offset < 0 else "+"
             words = f"calibrated, {gain:g}*value {sign} {abs(offset):g}"
-            return (gain * y + offset) * made.factor, words + (f" in {unit}" if unit else "")
+            numbers = (gain * y + offset) * made.factor if unit else gain * y + offset * made.factor
+            return numbers, words + (f" in {text}" if text else "")
 
         record = self._each(signal, calibrated)
         return replace(record, units={**self.units, signal: made})

@@ -231,9 +231,8 @@ class Series:
 
     def unit_of(self, channel: Channel) -> tuple[str, float]:
         """The unit of the column of a channel and its factor to SI: as declared, else that of the
-        file's header; no text and 1 where neither says one, or a step of `clean` gives it."""
-        calibrated = {s.options.get("signal") for s in self.clean if s.step == "calibrate"}
-        if channel.declared is not None or channel.signal in calibrated or not channel.column:
+        file's header; no text and 1 where neither says one."""
+        if channel.declared is not None or not channel.column:
             return channel.declared or "", channel.factor
         text = column_unit(self.file, channel.column, self.format.delimiter)
         try:

@@ -18,8 +18,13 @@ SAMPLE_BY_SAMPLE = ("sort", "trim", "calibrate")
 
 
 def read_series(series: Series) -> Record:
-    """The columns of a series in SI; those to be calibrated as they stand in the file."""
+    """The columns of a series in SI.
+
+    A unit that is declared at a signal is that of its calibrated numbers: its column is as it
+    stands in the file.
+    """
     channels = _columns(series)
+    calibrated = (str(s.options.get("signal")) for s in series.clean if s.step == "calibrate")
     clock, form = series.time, series.format
     return read_record(
         series.file,
@@ -27,7 +32,7 @@ def read_series(series: Series) -> Record:
         clock.column or None,
         units={n: c.declared for n, c in channels.items() if c.declared is not None},
         time_unit=clock.unit,
-        raw=[str(s.options.get("signal")) for s in series.clean if s.step == "calibrate"],
+        raw=[n for n in calibrated if n in channels and channels[n].declared is not None],
         delimiter=form.delimiter,
         decimal=form.decimal,
         comment=form.comment,
