@@ -181,7 +181,7 @@ def fit(
     attempt = WriteAttempts()
 
     def edited() -> Diagram:
-        return patch(model.diagram, [SetValues(found.values)])
+        return patch(model.diagram, [SetValues(found.found)])
 
     attempt(lambda: store(model.diagram, edited, target.apply, target.output))
     attempt(lambda: write_report(found, target.report, profiles))

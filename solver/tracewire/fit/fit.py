@@ -19,6 +19,7 @@ from tracewire.compile import Model
 from tracewire.errors import DataError, FitError, OptionError, Problem, unknown
 from tracewire.fit.checkpoint import Store, resume_from
 from tracewire.fit.compare import compare_series, outputs_by_series
+from tracewire.fit.kept import EXACT, is_exact, kept_words, with_unmoved_kept
 from tracewire.fit.methods import METHODS
 from tracewire.fit.optimset import Options, optimset
 from tracewire.fit.refusals import (
@@ -165,27 +166,37 @@ def fit(
     )
     if resume is not None:
         _resume(search, resume_from(resume, method, criterion))
-    result = _run_method(search, method)
+    if criterion_before == 0:
+        result = MethodResult(first, 0, 1, "the criterion is 0 at the start: nothing is to gain")
+    else:
+        result = _run_method(search, method)
     search.finish()
     evaluations = criterion.evaluations
     last, z = result.criterion or criterion, result.z
     failures = criterion.failures if last is criterion else criterion.failures + last.failures
+    began_with = {u.name: u.value for u in unknowns}
+    follows = bool(model.states) if correlated is None else correlated
     residuals, derivatives = last.residuals_and_jacobians(z)
+    uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
+    kept = with_unmoved_kept(last, z, uncertainty.unmoved, began_with)
+    if kept is not z:
+        z = kept
+        residuals, derivatives = last.residuals_and_jacobians(z)
+        uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
     named, starts = last.unpack(z)
     found_starts: dict[str, Mapping[str, float]] = {}
     for segment, start in zip(last.segments, starts, strict=True):
         found_starts.setdefault(segment.measured.name, start)
-    follows = bool(model.states) if correlated is None else correlated
-    uncertainty = uncertainty_of(last, z, residuals, derivatives, follows)
-    matrix = last.weigh_jacobians(residuals, derivatives)
-    short = unfinished(uncertainty, last, matrix, last.weigh(residuals), method)
     value = half_square(last.weigh(residuals))
     shown = compare_series(model, series, before, outputs_by_series(last, z, others))
+    exact = is_exact(shown, rtol)
+    matrix = last.weigh_jacobians(residuals, derivatives)
+    short = "" if exact else unfinished(uncertainty, last, matrix, last.weigh(residuals), method)
     return Fit(
         model=model,
         method=method,
         measured=series,
-        began={u.name: u.value for u in unknowns},
+        began=began_with,
         values=named,
         bounds={u.name: (u.low, u.high) for u in unknowns},
         starts=found_starts,
@@ -207,7 +218,8 @@ def fit(
         unfinished=short,
         remarks=(
             *(store.remarks if store else ()),
-            *rises(criterion_before, value, method),
+            *([EXACT] if exact else rises(criterion_before, value, method)),
+            *kept_words(uncertainty.unmoved, named, began_with),
             *starts_elsewhere(model, series, shown),
             *begins_fast(model, series, found_starts),
             *raises_unseen(shown, method),

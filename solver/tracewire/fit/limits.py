@@ -19,6 +19,9 @@ class SearchLimits:
     """Its relative tolerance on formulas alone."""
     noisy: Final[float] = 1e-2
     """The same on runs, in units of their rtol."""
+    unmoved: Final[float] = 1e-3
+    """The part by which the criterion may rise where a parameter without effect is put back: other
+    values change the steps of a run, and so its rounding."""
 
 
 SEARCH = SearchLimits()

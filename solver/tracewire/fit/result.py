@@ -133,6 +133,12 @@ class Fit(Result):
     remarks: tuple[str, ...] = field(default_factory=tuple)
 
     @property
+    def found(self) -> dict[str, float]:
+        """The values without those that the data do not depend on, which are as they were."""
+        kept = {n for n in self.uncertainty.unmoved if self.values.get(n) == self.began.get(n)}
+        return {name: value for name, value in self.values.items() if name not in kept}
+
+    @property
     def errors(self) -> Mapping[str, float]:
         """Standard errors by name in SI; NaN where the data do not determine a value."""
         return self.uncertainty.errors

@@ -22,7 +22,8 @@ def channel_noise(measured: Sequence[Measured]) -> dict[str, float]:
 def estimate_noise(measured: Sequence[Measured]) -> dict[str, NoiseEstimate]:
     """The noise of each measured signal: as declared, else estimated; the median over series.
 
-    At least the step of the readings over the root of 12, and a millionth of the signal's spread.
+    At least the step of the readings over the root of 12, and a millionth of the spread, or of its
+    size where the signal is constant.
     """
     found: dict[str, list[NoiseEstimate]] = {}
     for series in measured:
@@ -37,7 +38,8 @@ def _of_channel(series: Measured, name: str, values: Vector) -> NoiseEstimate:
         step = rounding_step(values, series.t)
         return NoiseEstimate(declared, declared, declared, "declared", step)
     estimate = noise_of_signal(values, series.t)
-    least = max(NOISE.least * float(np.std(values)), 1e-300)
+    size = float(np.std(values) if np.ptp(values) else np.max(np.abs(values)))
+    least = NOISE.least * size or 1e-300
     if estimate.level >= least:
         return estimate
     return replace(

@@ -141,7 +141,8 @@ def series_contents(series: Measured, model: Model) -> dict[str, object]:
     sigma = {name: value for name, value in noises.items() if value is not None}
     enough = len(series.t) >= WINDOW.traced
     noise = estimate_noise([series]) if enough else {}
-    seen = {name: estimate for name, estimate in noise.items() if name not in sigma}
+    shows = {name for name, values in series.values.items() if values.min() < values.max()}
+    seen = {n: estimate for n, estimate in noise.items() if n in shows and n not in sigma}
     estimated = {name: estimate.level for name, estimate in seen.items()}
     how = {name: f", estimated ({estimate.method})" for name, estimate in seen.items()}
     told = [
