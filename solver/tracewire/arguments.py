@@ -242,6 +242,8 @@ def _remedy(name: str, kind: Any) -> str:
         made = made or MADE_BY.get(getattr((*inside, one)[0], "__name__", ""))
         if made is not None:
             return made[1]
+        if origin is Mapping and inside[1] == float | None:
+            return f'Write {name}={{"name": 2.0}}, or None in place of a number that is free.'
         if origin is Mapping and inside[1] in (float, Any):
             return f'Write {name}={{"name": 2.0}}.'
         if origin is tuple and set(inside) == {float}:

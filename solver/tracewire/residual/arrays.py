@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
+from numbers import Real
 from typing import Any, get_args
 
 import numpy as np
@@ -15,6 +17,7 @@ from tracewire.residual.inputs import between_samples
 from tracewire.solve import Driving, with_points
 
 NO_VALUE = "Leave out the rows without a value."
+NO_SIGMA = "Leave it out, and the noise is estimated."
 SORT = "Sort the rows by t, and keep one for each time."
 
 
@@ -47,6 +50,30 @@ class ArrayCheck:
         wrong = (unknown(kind, name, known) for name in given if name not in known)
         self.problems += [Problem(f"{self._of(of)}: {p.what}", p.place, p.exists, p.hint)
                           for p in wrong]  # fmt: skip
+
+    def mappings(self, given: Mapping[str, Any]) -> None:
+        """Raise DataError where an argument is no dictionary."""
+        for of, value in given.items():
+            if not isinstance(value, Mapping):
+                hint = f'Write {of}={{"x": ...}}, with the names of the diagram.'
+                what = f"{self._of(of)} is no dictionary"
+                self.problems.append(Problem(what, hint=hint))
+        self.finish()
+
+    def above_zero(self, of: str, given: Any, hint: str = "") -> None:
+        """Note a number that is not finite and above zero."""
+        plain = isinstance(given, Real) and not isinstance(given, bool)
+        if not plain or not (math.isfinite(given) and given > 0):
+            what = f"{self._of(of)} must be a number above zero, not {given!r}"
+            self.problems.append(Problem(what, hint=hint))
+
+    def starts(self, given: Mapping[str, Any]) -> None:
+        """Note start values that are neither finite numbers nor None."""
+        for name, value in given.items():
+            plain = isinstance(value, Real) and math.isfinite(value)
+            if value is not None and not plain:
+                what = f"{self._of(f'the start of {name!r}')} must be a number, not {value!r}"
+                self.problems.append(Problem(what, hint="None is a free start value."))
 
     def finish(self) -> None:
         """Raise DataError with all that was noted."""
@@ -139,7 +166,11 @@ def fields_of_frame(
     for column, values in record.columns.items():
         exact = column in driving
         remarks += signal_remarks(column, record.t, values, record.unit(column).text, exact=exact)
+    for one, value in sigma.items():
+        check.above_zero(f"sigma of '{one}'", value, NO_SIGMA)
+    check.finish()
     noise = {n: value * record.unit(n).factor for n, value in sigma.items()}
+    known_units = {n: record.unit(n) for n in known if record.unit(n).text}
     return {
         "name": name,
         "use": use,
@@ -148,6 +179,7 @@ def fields_of_frame(
         "inputs": driven,
         "sigma": {n: value for n, value in noise.items() if n in measured},
         "input_sigma": {n: value for n, value in noise.items() if n in driving},
+        "units": {n: unit.written or unit.text for n, unit in known_units.items()},
         "steps": tuple(steps),
         "remarks": tuple(remarks),
     }

@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 
+from tracewire.arguments import checked
 from tracewire.array_types import Vector
 from tracewire.compile import Model, compile, find_name_clashes
 from tracewire.diagram import Hold, Use
 from tracewire.errors import DataError, OptionError, Problem
-from tracewire.residual.arrays import ArrayCheck, fields_of_frame
+from tracewire.formula import same_quantity
+from tracewire.residual.arrays import NO_SIGMA, ArrayCheck, fields_of_frame
 from tracewire.residual.local_quartics import quartic_points
 from tracewire.residual.sensor import PLAIN, Sensor
 from tracewire.solve import Driving, Options
@@ -37,10 +39,12 @@ class Measured:
     a run begins at the start of the diagram's span. `parameters` are those of the diagram that have
     a value of their own in this series, `free` the bounds of those that a fit may change. `series`
     is its name in the diagram, which is not `name` where it has several windows. `steps` tells what
-    was done to the data since they were read, `remarks` what is odd about them.
+    was done to the data since they were read, `remarks` what is odd about them. `units` are those
+    of columns of a frame, for what knows the units of the model.
 
     Arrays may be lists, or columns of a frame. Raises DataError: a length that differs from that of
-    `t`, a value that is not finite, a time that does not increase, an unknown signal.
+    `t`, a value that is not finite, a time that does not increase, an unknown signal, a sigma or a
+    weight that is not above zero.
     """
 
     name: str
@@ -65,15 +69,25 @@ class Measured:
     drift_from: float | None = None
     input_sigma: Mapping[str, float] = field(default_factory=dict)
     past: Mapping[str, Driving] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check = ArrayCheck(self.name)
+        dictionaries = ("values", "sigma", "sensors", "periods", "weights", "inputs", "start")
+        check.mappings({of: getattr(self, of) for of in (*dictionaries, "parameters", "units")})
         t = check.time(self.t)
         values = check.values(self.values, t)
         given = {"t": t, "values": values, "inputs": check.inputs(self.inputs)}
         for of in ("sigma", "sensors", "periods", "weights"):
             check.names(of, "signal", getattr(self, of), self.values)
         check.names("input_sigma", "input", self.input_sigma, self.inputs)
+        for signal, sigma in {**self.sigma, **self.input_sigma}.items():
+            if sigma is not None:
+                check.above_zero(f"sigma of '{signal}'", sigma, NO_SIGMA)
+        check.above_zero("weight", self.weight, "Leave a series out that shall not count.")
+        for signal, weight in self.weights.items():
+            check.above_zero(f"weight of '{signal}'", weight)
+        check.starts(self.start)
         check.finish()
         given["values"] = {
             name: np.unwrap(column, period=self.periods[name]) if name in self.periods else column
@@ -88,6 +102,7 @@ class Measured:
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.0
 
     @classmethod
+    @checked
     def from_frame(
         cls,
         frame: Any,
@@ -113,7 +128,7 @@ class Measured:
         has start values of states in SI, None where free.
 
         Raises DataError: a column that does not exist, a value that is missing, rows that are not
-        in the order of time, a unit of another quantity.
+        in the order of time. A fit or a trace refuses a unit of another quantity.
         """
         fields = fields_of_frame(
             frame, signals, inputs, time, units or {}, sigma or {}, hold or {}, use, name
@@ -175,7 +190,8 @@ class Measured:
 def with_measured_signals(model: Model, series: Sequence[Measured]) -> Model:
     """The model with every signal of the series among the recorded ones.
 
-    Raises DataError: two series of one name, by which all else tells series apart; OptionError: a
+    Raises DataError: two series of one name, by which all else tells series apart, a column in a
+    unit of another quantity than its signal; OptionError: a
     signal that the model does not have, or with a sensor of which a number has the name of a
     parameter.
     """
@@ -184,9 +200,25 @@ def with_measured_signals(model: Model, series: Sequence[Measured]) -> Model:
         raise DataError(
             [Problem(f"several series are called '{name}'", hint=hint) for name in twice]
         )
+    if problems := [problem for m in series for problem in _unit_problems(model, m)]:
+        raise DataError(problems)
     signals = dict.fromkeys(signal for m in series for signal in m.values)
     if problems := find_name_clashes(model.flat, signals):
         raise OptionError(problems)
     if signals.keys() <= set(model.recorded):
         return model
     return compile(model.diagram, record=[*model.recorded, *signals])
+
+
+def _unit_problems(model: Model, series: Measured) -> list[Problem]:
+    """The columns of a frame that are in units of other quantities than the model's."""
+    found = []
+    for name, unit in series.units.items():
+        own = model.flat.units.get(name, "")
+        if own and not same_quantity(unit, own):
+            what = (
+                f"'{name}' is in {own} in the diagram, and in {unit} in the series '{series.name}'"
+            )
+            hint = 'Correct the unit: units={"x": "mm"} for a column whose name says none.'
+            found.append(Problem(what, hint=hint))
+    return found
