@@ -60,6 +60,11 @@ class Sweep(Result):
         return self.users_units.get(name, ("", 1.0))[0]
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if not isinstance(name, str):
+            what = f"sweep[{name!r}]: a sweep is read by the name of an output"
+            first = next(iter(self.values), "max(x)")
+            hint = f'Write sweep["{first}"][{name!r}] for that point of the grid.'
+            raise OptionError.one(what, exists=tuple(self.values), hint=hint)
         if name not in self.values:
             raise OptionError([unknown("output", name, self.values)])
         return self.values[name]

@@ -9,6 +9,7 @@ from tracewire.cli.analyse_orbits import chart, floquet, orbit
 from tracewire.cli.analyse_planes import polar, portrait
 from tracewire.cli.analyse_sections import bifurcation, lyapunov, section
 from tracewire.cli.analyse_signals import growth, invariants, scalogram, spectrum
+from tracewire.cli.multi_value import OneValueCommand
 from tracewire.cli.records import with_fields
 from tracewire.cli.verb_group import VerbGroup
 
@@ -23,4 +24,4 @@ _motion = (portrait, polar, spectrum, scalogram, growth, invariants)
 _stability = (steady, linearise, orbit, floquet, chart)
 _chaos = (section, bifurcation, lyapunov)
 for _kind in (*_motion, *_stability, *_chaos):
-    analyse.command()(with_fields(_kind))
+    analyse.command(cls=OneValueCommand)(with_fields(_kind))

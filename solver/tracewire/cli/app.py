@@ -16,7 +16,7 @@ from typer.main import get_command
 
 from tracewire.cli.interrupt import INTERRUPTED, is_interrupt
 from tracewire.cli.limits import LIMITS
-from tracewire.cli.multi_value import MultiValueCommand
+from tracewire.cli.multi_value import MultiValueCommand, OneValueCommand
 from tracewire.cli.output import Cut, print_problems
 from tracewire.cli.records import with_fields
 from tracewire.cli.streams import safe_streams
@@ -98,7 +98,8 @@ def _app(verbs: Sequence[str]) -> typer.Typer:
         if isinstance(made, typer.Typer):
             app.add_typer(made, name=verb)
         else:
-            app.command(cls=MultiValueCommand if verb == "trace" else None)(with_fields(made))
+            kind = MultiValueCommand if verb == "trace" else OneValueCommand
+            app.command(cls=kind)(with_fields(made))
     return app
 
 

@@ -1,4 +1,4 @@
-"""Options that take several values: `--train a.csv b.csv`, and `--train a.csv --train b.csv`."""
+"""Options that take one value, and those that take several: `--train a.csv b.csv`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,21 @@ from typer.core import TyperCommand, TyperOption
 DIAGRAMS = (".yaml", ".yml")
 
 
-class MultiValueCommand(TyperCommand):
+class OneValueCommand(TyperCommand):
+    """A command that refuses an option that stands twice where one value counts."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """The arguments parsed; what stands twice is looked for before."""
+        _, _, order = self.make_parser(ctx).parse_args(list(args))
+        single = [o for o in order if isinstance(o, TyperOption) and not (o.multiple or o.is_flag)]
+        for option in single:
+            if single.count(option) > 1:
+                name = option.opts[0]
+                ctx.fail(f"{name} stands twice, and one value counts. Leave one out")
+        return super().parse_args(ctx, args)
+
+
+class MultiValueCommand(OneValueCommand):
     """A command whose repeatable options take all values up to the next option.
 
     The parser behind typer knows a fixed number of values only, so the name of the option is set

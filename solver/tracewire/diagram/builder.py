@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+from tracewire.arguments import checked
 from tracewire.diagram.built import Data, Names, by_python, caller, node_of, text_of
 from tracewire.diagram.diagram import Diagram
 from tracewire.diagram.reader import read_text
@@ -44,6 +45,7 @@ class BodyBuilder:
         self._inner: dict[tuple[str, str], BodyBuilder] = {}
         self._comments: dict[Names, str] = {}
 
+    @checked
     def parameter(
         self,
         name: str,
@@ -60,6 +62,7 @@ class BodyBuilder:
         self._add("parameters", name, given if len(given) > 1 else value, comment)
         return name
 
+    @checked
     def input(
         self,
         name: str,
@@ -76,6 +79,7 @@ class BodyBuilder:
         self._add("inputs", name, given, comment)
         return Signal(name)
 
+    @checked
     def block(self, name: str, type: str, *, comment: str = "", **settings: Data) -> Signal:
         """A block of a type, with the signals of its inputs and the values of its parameters.
 

@@ -332,7 +332,7 @@ class Statement:
     place: Location = Location()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Diagram:
     """A diagram, or a subsystem of one, with everything that its file says.
 
@@ -378,6 +378,10 @@ class Diagram:
         def __getattr__(self, name: str) -> Any:
             what = f"a diagram has no attribute '{name}'"
             raise AttributeError(f"{what}. Where a model is meant: tracewire.compile(diagram).")
+
+    def __repr__(self) -> str:  # with its text and library it would fill many screens
+        shown = f"{len(self.blocks)} blocks, {len(self.parameters)} parameters"
+        return f"Diagram({(self.title or self.name)!r}: {shown})"
 
     def users_unit(self, signal: str, unit: str) -> tuple[str, float]:
         """The unit in which a user has a signal or an input, and its factor to SI: `deg`, pi/180.

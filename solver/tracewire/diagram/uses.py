@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from difflib import get_close_matches
+from pathlib import Path
 
 from tracewire.diagram.arrays import read_array, read_formulas
 from tracewire.diagram.body import Body, Reference
@@ -29,8 +30,26 @@ def read_blocks(node: Node, body: Body, find: Find) -> dict[str, BlockUse]:
     found: dict[str, BlockUse] = {}
     for name, key, line in body.entries(node, "'blocks'", f"{{column: {EXAMPLE}}}") or ():
         body.define("a block", key)
+        if isinstance(line, Entries) and isinstance(node, Entries) and "type" not in line.values:
+            _refuse_new(name, key, node, body)
+            found[name] = BlockUse(name, "", {}, {}, place=body.place(key, name))
+            continue
         found[name] = _read_block(name, key, line, body, find)
     return found
+
+
+def _refuse_new(name: str, key: Scalar, blocks: Entries, body: Body) -> None:
+    """Note a block without a type, which in a file that extends another one may be a typo."""
+    others = {k: n for k, n in blocks.keys.items() if n.place.file != key.place.file}
+    place, hint = body.place(blocks.values[name], name), "Write type: ..."
+    if not others:
+        body.problems.add("it needs 'type'", place, (), hint)
+        return
+    file = Path(next(iter(others.values())).place.file).name
+    what = f"it is no block of '{file}', and a new one needs 'type'"
+    near = get_close_matches(name, others, n=1)
+    hint = f"Did you mean '{near[0]}'?" if near else hint
+    body.problems.add(what, place, tuple(others), hint)
 
 
 def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> BlockUse:
@@ -39,9 +58,9 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     entries = body.entries(line, "it", EXAMPLE, name)
     if entries is None:
         return unread
-    type_node = body.required(entries, "type", "it", name)
-    type_name = None if type_node is None else body.text(type_node, "a type", name)
-    if type_node is None or type_name is None:
+    type_node = entries.values["type"]
+    type_name = body.text(type_node, "a type", name)
+    if type_name is None:
         return unread
     kind = find(type_name, body.place(type_node, name), entries)
     unit, shown = body.shown(entries, name)

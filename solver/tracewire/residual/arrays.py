@@ -125,8 +125,8 @@ class ArrayCheck:
 
 def fields_of_frame(
     frame: Any,
-    signals: Iterable[str] | Mapping[str, str],
-    inputs: Iterable[str] | Mapping[str, str],
+    signals: str | Iterable[str] | Mapping[str, str],
+    inputs: str | Iterable[str] | Mapping[str, str],
     time: str | None,
     units: Mapping[str, str],
     sigma: Mapping[str, float],
@@ -185,7 +185,7 @@ def fields_of_frame(
     }
 
 
-def _by_name(columns: Iterable[str] | Mapping[str, str]) -> dict[str, str]:
+def _by_name(columns: str | Iterable[str] | Mapping[str, str]) -> dict[str, str]:
     """Columns by the names that they stand for."""
     if isinstance(columns, Mapping):
         return dict(columns)

@@ -106,9 +106,9 @@ class Measured:
     def from_frame(
         cls,
         frame: Any,
-        signals: Iterable[str] | Mapping[str, str],
+        signals: str | Iterable[str] | Mapping[str, str],
         *,
-        inputs: Iterable[str] | Mapping[str, str] = (),
+        inputs: str | Iterable[str] | Mapping[str, str] = (),
         time: str | None = None,
         units: Mapping[str, str] | None = None,
         sigma: Mapping[str, float] | None = None,

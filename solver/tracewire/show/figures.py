@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tracewire.errors import OptionError, Problem
+from tracewire.residual import Measured
 from tracewire.show.event_rows import draw_events, event_rows, jump_times
 from tracewire.show.limits import FIGURE
 from tracewire.show.sticking import held_intervals
@@ -17,8 +18,6 @@ from tracewire.solve import Run
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from tracewire.residual import Measured
 
 
 def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Path:
@@ -30,6 +29,9 @@ def plot_run(run: Run, path: str | Path, measured: Measured | None = None) -> Pa
     sticks, a tick at each reset, impact or crossing. Raises OptionError: nothing recorded, another
     ending of the file; OSError.
     """
+    if measured is not None and not isinstance(measured, Measured):
+        hint = "Load all: tracewire.load_measured(model)."
+        raise OptionError.one(f"measured is {measured!r}, and not a measured series", hint=hint)
     groups = group_signals(run)
     if not groups:
         hint = "Name signals under `record:` of the diagram."

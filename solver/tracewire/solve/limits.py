@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from tracewire.errors import Problem, SimulationError
+from tracewire.errors import OptionError, Problem, SimulationError
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,16 @@ class Limits:
     seconds: float = 600.0
     events: int = 1_000_000
     max_step: float = math.inf
+
+    def refuse(self) -> None:
+        """Raises OptionError: a limit that is not above zero; no events may be kept."""
+        problems = [
+            Problem(f"the limit '{name}' of a run must be above zero, not {value:g}")
+            for name, value in vars(self).items()
+            if not value > (-1 if name == "events" else 0)
+        ]
+        if problems:
+            raise OptionError(problems)
 
 
 class SampleLimits:

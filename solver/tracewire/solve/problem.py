@@ -154,6 +154,7 @@ def pose(
     if method != "auto" and method not in NAMES:
         raise OptionError([unknown("method", method, ["auto", *NAMES])])
     limits = options_of(Limits, given.get("limits"), "limits of a run")
+    limits.refuse()
     longest = longest_step(model, values, limits)
     rtol, atol, step = given.get("rtol", 1e-6), given.get("atol"), given.get("step")
     tolerance = tolerance_of(model, rtol, atol, method, step, end - begin, longest)

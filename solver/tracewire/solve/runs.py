@@ -39,6 +39,13 @@ class Runs(Result):
         return len(self.final)
 
     def __getitem__(self, name: str) -> Matrix:
+        if not isinstance(name, str):
+            what = f"runs[{name!r}]: runs are read by the name of a signal"
+            first = next(iter(self.signals), "x")
+            hint = (
+                f'Write runs["{first}"][{name!r}] for one row, runs["{first}"] for all (rows, N).'
+            )
+            raise OptionError.one(what, exists=self.signals, hint=hint)
         if name not in self.signals:
             hint = "Add it to `record:` of the diagram, or to `record=` of compile."
             raise OptionError([unknown("recorded signal", name, self.signals, hint=hint)])
