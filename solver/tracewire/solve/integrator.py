@@ -47,6 +47,7 @@ from tracewire.solve.once_per_model import once_per_model
 from tracewire.solve.problem import InitialValueProblem
 from tracewire.solve.progress import ProgressCallback
 from tracewire.solve.run import EventLog, Run, Statistics
+from tracewire.solve.sampling import short_of_end
 from tracewire.solve.sensitivities import recorded, undefined
 from tracewire.solve.setup import Records
 from tracewire.solve.tables import unknown_parts
@@ -250,6 +251,7 @@ class Integrator:
         samples = progress.samples[:count, : len(model.recorded)]  # states may stand behind them
         answers, log = self.arrays.sensitivity.samples[:count], self.log.copy()
         inputs = problem.given.get("inputs") or {}
+        spaced = problem.times if problem.given.get("times") is None else problem.times[:0]
         return Run(
             title=model.flat.title,
             t=problem.times[:count],
@@ -260,7 +262,11 @@ class Integrator:
             start=dict(zip(names, problem.start.tolist(), strict=True)),
             final=dict(zip(names, progress.x.tolist(), strict=True)),
             statistics=self.statistics,
-            warnings=(*self.warnings, *unknown_parts(inputs, *problem.span)),
+            warnings=(
+                *self.warnings,
+                *short_of_end(spaced, problem.span[1]),
+                *unknown_parts(inputs, *problem.span),
+            ),
             shown=model.flat.shown,
             model=model,
             sensitivities=recorded(model, answers, problem.sensitivities),

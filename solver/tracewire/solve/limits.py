@@ -36,6 +36,8 @@ class SampleLimits:
 
     most: Final[int] = 10_000_000
     """Samples of a run, or instants of a stroboscopic section."""
+    short: Final[float] = 1e-6
+    """Of an interval: what the last sample may lack to be at the end of a run."""
     close: Final[float] = 1e-12
     """Of a period: what an instant may lack to be within the span."""
 

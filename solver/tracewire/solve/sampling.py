@@ -92,6 +92,18 @@ def samples_of(
     return np.asarray(np.minimum(begin + every * np.arange(count + 1), end))
 
 
+def short_of_end(samples: Vector, end: float) -> list[str]:
+    """That evenly spaced samples end before the run does, which goes on without one."""
+    if len(samples) < 2 or end - samples[-1] <= SAMPLE.short * (samples[1] - samples[0]):
+        return []
+    every = float(samples[1] - samples[0])
+    return [
+        f"the run ends at {end:g} s and its last sample is at {samples[-1]:g} s, as `every` "
+        f"{every:g} s does not divide the span: end() is the value there, and events count to the "
+        "end; give an `every` that divides the span"
+    ]
+
+
 @lru_cache(maxsize=MEMORY.times)
 def _default_times(begin: float, end: float) -> Vector:
     return np.linspace(begin, end, DEFAULT_SAMPLES)
