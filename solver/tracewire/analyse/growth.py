@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import floor_of, signal_of, vertex
+from tracewire.analyse.signal import SI, floor_of, signal_of, users_unit_of, vertex
 from tracewire.arguments import checked
 from tracewire.array_types import Vector
 from tracewire.errors import AnalysisError, OptionError, Problem, unknown
@@ -38,6 +38,19 @@ class GrowthRate(Result):
     bends: bool
     t: Vector
     size: Vector
+    users_unit: tuple[str, float] = SI
+
+    @property
+    def as_shown(self) -> GrowthRate:
+        """The same in the unit in which tables and figures show the signal."""
+        unit, factor = self.users_unit
+        return replace(
+            self,
+            unit=unit or self.unit,
+            size=self.size / factor,
+            level=self.level - float(np.log(factor)),
+            users_unit=SI,
+        )
 
 
 @checked
@@ -79,7 +92,8 @@ def growth_rate(
     )
     rate, level, error, _ = _line(t, np.log(top))
     late, bends = _halves(t, np.log(top), rate)
-    return GrowthRate(signal, found.unit, rate, error, level, late, bends, t, top)
+    shown = users_unit_of(run, signal)
+    return GrowthRate(signal, found.unit, rate, error, level, late, bends, t, top, shown)
 
 
 def _too_few(signal: str, count: int, noise: int, floor: float, unit: str) -> AnalysisError:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from tracewire.analyse.signal import SI, users_unit_of
 from tracewire.arguments import checked
 from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem, unknown
@@ -30,6 +31,22 @@ class Drift(Result):
     at: float
     t: Vector
     values: Vector
+    users_unit: tuple[str, float] = SI
+
+    @property
+    def as_shown(self) -> Drift:
+        """The same in the unit in which tables and figures show the signal."""
+        unit, factor = self.users_unit
+        return replace(
+            self,
+            unit=unit or self.unit,
+            start=self.start / factor,
+            largest=self.largest / factor,
+            final=self.final / factor,
+            scale=self.scale / factor,
+            values=self.values / factor,
+            users_unit=SI,
+        )
 
     @property
     def relative(self) -> float:
@@ -79,4 +96,5 @@ def _drift(run: Run, name: str, scale: float | None) -> Drift:
         at=float(run.t[worst]),
         t=run.t,
         values=off,
+        users_unit=users_unit_of(run, name),
     )

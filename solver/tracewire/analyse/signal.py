@@ -11,6 +11,14 @@ from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem
 from tracewire.solve import Run
 
+SI = ("", 1.0)
+
+
+def users_unit_of(run: Run, name: str) -> tuple[str, float]:
+    """The unit in which tables and figures show a signal, and its factor to SI."""
+    shown = run.look(name)
+    return shown.unit, shown.factor
+
 
 @dataclass(frozen=True, eq=False)
 class Signal:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.signal import find_peaks, get_window
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import signal_of
+from tracewire.analyse.signal import SI, signal_of, users_unit_of
 from tracewire.arguments import checked
 from tracewire.array_types import Vector
 from tracewire.errors import OptionError, Problem, unknown
@@ -44,6 +44,19 @@ class Spectrum(Result):
     amplitude: Vector
     resolution: float
     lines: tuple[Line, ...]
+    users_unit: tuple[str, float] = SI
+
+    @property
+    def as_shown(self) -> Spectrum:
+        """The same in the unit in which tables and figures show the signal."""
+        unit, factor = self.users_unit
+        return replace(
+            self,
+            unit=unit or self.unit,
+            amplitude=self.amplitude / factor,
+            lines=tuple(replace(line, amplitude=line.amplitude / factor) for line in self.lines),
+            users_unit=SI,
+        )
 
 
 @checked
@@ -83,6 +96,7 @@ def spectrum(
         amplitude,
         resolution,
         _lines(frequency, amplitude, window, lines),
+        users_unit_of(run, signal),
     )
 
 

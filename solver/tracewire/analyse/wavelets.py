@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import fft, ifft, next_fast_len
 
 from tracewire.analyse.limits import SIGNAL
-from tracewire.analyse.signal import signal_of, vertex
+from tracewire.analyse.signal import SI, signal_of, users_unit_of, vertex
 from tracewire.arguments import checked
 from tracewire.array_types import Matrix, Vector
 from tracewire.errors import OptionError, Problem
@@ -36,6 +36,15 @@ class Scalogram(Result):
     amplitude: Matrix
     edge: Vector
     ridge: Vector
+    users_unit: tuple[str, float] = SI
+
+    @property
+    def as_shown(self) -> Scalogram:
+        """The same in the unit in which tables and figures show the signal."""
+        unit, factor = self.users_unit
+        return replace(
+            self, unit=unit or self.unit, amplitude=self.amplitude / factor, users_unit=SI
+        )
 
 
 @checked
@@ -79,7 +88,10 @@ def scalogram(
     ridge = frequency[best] * np.exp(np.log(frequency[1] / frequency[0]) * _beside(amplitude, best))
     away = np.minimum(found.t - found.t[0], found.t[-1] - found.t)
     ridge = np.where(away >= edge[best], ridge, np.nan)
-    return Scalogram(run.title, signal, found.unit, found.t, frequency, amplitude, edge, ridge)
+    shown = users_unit_of(run, signal)
+    return Scalogram(
+        run.title, signal, found.unit, found.t, frequency, amplitude, edge, ridge, shown
+    )
 
 
 def _beside(amplitude: Matrix, best: NDArray[np.int64]) -> Vector:

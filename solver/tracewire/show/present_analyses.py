@@ -297,6 +297,7 @@ def _lyapunov_data(found: Lyapunov) -> dict[str, Any]:
 
 
 def _spectrum_parts(found: Spectrum) -> list[Part]:
+    found = found.as_shown
     rows = tuple((precise(line.frequency), precise(line.amplitude)) for line in found.lines)
     header = ("frequency [Hz]", with_unit("amplitude", found.unit))
     return [
@@ -310,6 +311,7 @@ def _spectrum_data(found: Spectrum) -> dict[str, Any]:
 
 
 def _scalogram_line(found: Scalogram) -> str:
+    found = found.as_shown
     return f"largest amplitude {found.amplitude.max():.6g} {found.unit}".rstrip()
 
 
@@ -338,7 +340,7 @@ def drift_table(found: Iterable[Drift]) -> Table:
     """How far signals drift that should stay the same."""
     rows = tuple(
         (d.name, d.unit, precise(d.start), f"{d.largest:.3g}", precise(d.at), f"{d.relative:.3g}")
-        for d in found
+        for d in (one.as_shown for one in found)
     )
     header = ("signal", "unit", "start", "largest drift", "at t [s]", "relative")
     return Table("drift", header, rows, frozenset({2, 3, 4, 5}))
@@ -347,6 +349,11 @@ def drift_table(found: Iterable[Drift]) -> Table:
 def drift_data(found: Drift) -> dict[str, Any]:
     """The numbers of a drift."""
     return {n: getattr(found, n) for n in ("start", "largest", "final", "relative", "scale")}
+
+
+def _drift_line(found: Drift) -> str:
+    found = found.as_shown
+    return f"{found.name} by at most {found.largest:.3g} {found.unit}".rstrip()
 
 
 def _plot_drift(found: Drift, path: str, title: str = "") -> Any:
@@ -416,7 +423,7 @@ PRESENTATIONS = {
     ),
     GrowthRate: Presentation(_growth_line, lambda f: [_growth_line(f)], _growth_data, plot_growth),
     Drift: Presentation(
-        lambda f: f"{f.name} by at most {f.largest:.3g} {f.unit}".rstrip(),
+        _drift_line,
         lambda f: [drift_table([f])],
         drift_data,
         _plot_drift,

@@ -29,6 +29,7 @@ def plot_spectrum(found: Spectrum, path: str | Path, high: float | None = None) 
     Up to `high` in Hz, or to where nothing above a hundred-thousandth is left. Raises OptionError,
     OSError.
     """
+    found = found.as_shown
     top = float(found.amplitude.max(initial=0.0))
     if not top > 0:
         what = f"the spectrum of '{found.signal}' is zero"
@@ -73,6 +74,7 @@ def plot_scalogram(found: Scalogram, path: str | Path) -> Path:
 
     The line is the ridge. Raises OptionError, OSError.
     """
+    found = found.as_shown
     with styled():
         figure, (panel,) = panels([4.4], found.title)
         every = max(1, len(found.t) // FIGURE.scalogram_pixels)
@@ -106,6 +108,7 @@ def plot_scalogram(found: Scalogram, path: str | Path) -> Path:
 
 def plot_growth(found: GrowthRate, path: str | Path) -> Path:
     """Draw the points of an envelope, logarithmic, with the line whose slope is the rate."""
+    found = found.as_shown
     with styled():
         figure, (panel,) = panels([3.4])
         panel.semilogy(found.t, found.size, ".", color=LINES[0], label="envelope")
@@ -162,7 +165,7 @@ def plot_invariants(found: Sequence[Drift], path: str | Path, title: str = "") -
         raise OptionError([Problem("no invariant is there to draw", hint="Name one.")])
     with styled():
         figure, below = panels([2.0] * len(found), title)
-        for panel, drift in zip(below, found, strict=True):
+        for panel, drift in zip(below, (one.as_shown for one in found), strict=True):
             panel.plot(drift.t, drift.values / (drift.scale or 1.0), color=LINES[0], linewidth=0.9)
             panel.set_ylabel(f"drift of {drift.name}")
             told = f"largest {drift.relative:.2g} of {drift.scale:.4g} {drift.unit}".rstrip()
