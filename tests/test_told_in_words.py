@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import tracewire as tw
 from tracewire.cli import main
-from tracewire.errors import DiagramError, OptionError
+from tracewire.errors import DiagramError, OptionError, SimulationError
 
 TEXT = """\
 span: [0, 1]
@@ -79,3 +79,9 @@ def test_a_typo_in_a_block_of_the_base_is_told(tmp_path: Path) -> None:
     words = r"it is no block of 'car\.yaml', and a new one needs 'type'; there are: front, d"
     with pytest.raises(DiagramError, match=words + r"\. Did you mean 'front'"):
         tw.read_text("extends: car.yaml\nblocks: {fromt: {start: 3}}\n", tmp_path / "own.yaml")
+
+
+def test_a_loop_whose_solution_was_not_found_may_have_one() -> None:
+    loop = "span: [0, 1]\nblocks: {y: {type: expression, formula: y**3 - t + 1, guess: 0}}\n"
+    with pytest.raises(SimulationError, match="loop y -> y, of which no solution was found there"):
+        tw.simulate(tw.compile(tw.read_text(loop)))

@@ -26,6 +26,7 @@ from tracewire.cli.values import parameter_values_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from tracewire.compile import Model
     from tracewire.diagram import Diagram
     from tracewire.fit import Options, Profile, Progress
 
@@ -152,6 +153,8 @@ def fit(
     model = load_model(diagram, library)
     check_home(model.diagram, target.output, target.apply)
     options = _options(limits.options, course.plot)
+    if target.apply or target.output:
+        _check_values(model, given)
     parameters = parameter_values_of(model, given.values or [])
     with working("fitting") as tell:
         found = fit_model(
@@ -195,6 +198,17 @@ def fit(
     attempt.finish(target.as_json)
     if cut:
         raise Cut
+
+
+def _check_values(model: Model, given: FitGiven) -> None:
+    """Refuse, before the work, values that could not be written into the diagram after it."""
+    from tracewire.diagram import SetValues, patch
+    from tracewire.solve import parameter_values
+
+    now = parameter_values(model, {})
+    usual = [name for name, known in model.flat.parameters.items() if known.fit is not None]
+    moved = [name for name in given.free or usual if name not in (given.fix or ())]
+    patch(model.diagram, [SetValues({name: now[name] for name in moved if name in now})])
 
 
 def _options(limits: dict[str, float], plot: bool) -> Options | None:

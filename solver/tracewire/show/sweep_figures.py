@@ -44,7 +44,7 @@ def plot_chart(chart: StabilityChart, path: str | Path) -> Path:
             bar.set_label("growth of deviations [1/s]")
             bar.outline.set_visible(False)
         if chart.unstable.any() and not chart.unstable.all():
-            margin = np.nan_to_num(chart.margin, nan=-1.0)
+            margin = np.ma.masked_invalid(chart.margin)  # what failed says nothing of the edge
             panel.contour(chart.x, chart.y, margin, levels=[0.0], colors="#333333", linewidths=0.9)
         panel.set_xlabel(with_unit(chart.x_name, chart.units.get(chart.x_name, "")))
         panel.set_ylabel(with_unit(chart.y_name, chart.units.get(chart.y_name, "")))

@@ -213,9 +213,9 @@ def hint_of_loop(model: Model, name: str) -> str:
     for loop in model.flat.loops:
         if name in loop.names:
             return (
-                f"It is in the algebraic loop {loop.text}, which has no solution there, as where "
-                "the gain round it is 1: change that, give a `guess:` near a solution, or break "
-                "the loop with a state, such as an integrator."
+                f"It is in the algebraic loop {loop.text}, of which no solution was found there, "
+                "as where the gain round it is 1: change that, give a `guess:` near a solution, or "
+                "break the loop with a state, such as an integrator."
             )
     return ""
 
