@@ -85,3 +85,24 @@ def test_a_loop_whose_solution_was_not_found_may_have_one() -> None:
     loop = "span: [0, 1]\nblocks: {y: {type: expression, formula: y**3 - t + 1, guess: 0}}\n"
     with pytest.raises(SimulationError, match="loop y -> y, of which no solution was found there"):
         tw.simulate(tw.compile(tw.read_text(loop)))
+
+
+def test_a_unit_for_outputs_of_several_quantities_is_told() -> None:
+    words = "'unit' holds for all outputs, and x, v, held are several quantities. Take it away"
+    with pytest.raises(DiagramError, match=words):
+        tw.read_text("blocks: {cart: {type: hard_stop, high: 1, unit: mm}}\n")
+
+
+def test_a_sigma_of_some_signals_alone_is_told_by_check(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = "t,x\n" + "".join(f"{n / 10},{1 - n / 20}\n" for n in range(9))
+    (tmp_path / "s.csv").write_text(rows, encoding="utf-8")
+    series = "{file: s.csv, time: t, signals: {x: {column: x%s}}}"
+    text = f"{TEXT}measured:\n  one: {series % ''}\n  two: {series % ', sigma: 0.1'}\n"
+    (tmp_path / "d.yaml").write_text(text, encoding="utf-8")
+    assert main(["check", str(tmp_path / "d.yaml")]) == 0
+    told = capsys.readouterr()
+    assert "d.yaml:6:41: 'x' has no `sigma:` here, and other signals have one: a fit refuses" in (
+        " ".join((told.out + told.err).split())
+    )

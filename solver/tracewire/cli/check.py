@@ -100,12 +100,18 @@ def _contents(file: str, library: Sequence[str] | None, quiet: bool) -> dict[str
     present = [name for name in model.diagram.measured if name not in absent]
     if present:
         with working("reading the measured series"):
-            from tracewire.residual import free_names, load_measured, refuse_readers_of_free
+            from tracewire.residual import (
+                free_names,
+                load_measured,
+                refuse_readers_of_free,
+                sigma_problem,
+            )
 
             refuse_readers_of_free(model)
             series = load_measured(model, driving=True, series=present)
             measured = [series_contents(one, model) for one in series]
             found["free"] = free_names(model, series)
+            remarks += sigma_problem(model.diagram, present)
     if not quiet:
         print_text(contents_text(found, measured))
     return {**found, "measured": measured, "absent": list(absent)}

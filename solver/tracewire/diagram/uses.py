@@ -17,7 +17,16 @@ from tracewire.diagram.strict import Entries, Node, Scalar
 from tracewire.diagram.values import read_points, read_value, reads_parameters
 from tracewire.diagram.wires import read_wires
 from tracewire.errors import Location, unknown
-from tracewire.formula import Expression, Number, evaluate, is_name, names_of, to_text
+from tracewire.formula import (
+    Expression,
+    Name,
+    Number,
+    dimension_of,
+    evaluate,
+    is_name,
+    names_of,
+    to_text,
+)
 from tracewire.library import Block, Input, Parameter
 
 Find = Callable[[str, Location, Entries], Block | Diagram | None]
@@ -69,6 +78,8 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
         local = _read_local(entries.values["place"], type_name, body, name)
     if kind is None:
         return replace(unread, unit=unit, local=local)
+    if isinstance(kind, Block) and "unit" in entries.values:
+        _check_unit(kind, body.place(entries.values["unit"], name), body)
     ports, parameters = shape_of(kind)
     _check_keys(entries, (*ports, *parameters), type_name, body, name)
     inputs: dict[str, tuple[Wire, ...]] = {}
@@ -93,6 +104,19 @@ def _read_block(name: str, key: Scalar, line: Node, body: Body, find: Find) -> B
     return BlockUse(
         name, type_name, inputs, settings, unit, local, inside, guess, place, shown, row
     )
+
+
+def _check_unit(kind: Block, place: Location, body: Body) -> None:
+    """Note a unit for all outputs of a block whose outputs are of several quantities."""
+    names = [output.name for output in kind.outputs]
+    units = {o.name: dimension_of(o.unit) for o in kind.outputs if dimension_of(o.unit) is not None}
+    different = [n for n, unit in units.items() if unit != next(iter(units.values()))]
+    rates = [str(rate.name) for rate in kind.rates.values() if isinstance(rate, Name)]
+    moved = [name for name in rates if name in names and len(names) > 1]
+    if different or moved:
+        what = f"'unit' holds for all outputs, and {', '.join(names)} are several quantities"
+        hint = f"Take it away. `tracewire run --unit BLOCK.{names[0]}=UNIT` shows one in a unit."
+        body.problems.add(what, place, (), hint)
 
 
 def _check_keys(

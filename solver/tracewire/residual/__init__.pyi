@@ -21,7 +21,7 @@ from .noise import degrees_of, noise_in, noise_of, noises_beside
 from .noise_estimate import NoiseEstimate, noise_level, noise_of_signal
 from .noise_of_channels import channel_noise, estimate_noise
 from .past import longest_delay, with_past
-from .remarks import begins_elsewhere
+from .remarks import begins_elsewhere, sigma_problem
 from .segment import (
     OWN,
     Segment,
@@ -111,6 +111,7 @@ __all__ = [
     "sensor_unknowns",
     "series_from_files",
     "series_parameters",
+    "sigma_problem",
     "solve_least_squares",
     "start_from_data",
     "whole_segment",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import cast
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from tracewire.array_types import Vector
 from tracewire.compile import Model
 from tracewire.data import Record, signal_remarks, time_remarks, usual_range
-from tracewire.diagram import Channel, Series
+from tracewire.diagram import Channel, Diagram, Series
 from tracewire.errors import DataError, Problem
 from tracewire.formula import evaluate, names_of, quantity_hint, read_unit, two_digits
 from tracewire.residual.endings import alike, endings
@@ -306,3 +306,20 @@ def _on_span(
             f"{begin:g} s: say which time is t = 0, as in time: {{column: ..., zero: ...}}"
         )
     return found
+
+
+def sigma_problem(diagram: Diagram, present: Collection[str]) -> list[str]:
+    """That a fit refuses the series, of which some signals have a noise and others have none."""
+    given: dict[bool, list[Channel]] = {True: [], False: []}
+    for name in present:
+        series = diagram.measured[name]
+        if "train" in (series.windows or {series.use}):
+            for channel in series.channels.values():
+                given[channel.sigma is not None].append(channel)
+    if not (given[True] and given[False]):
+        return []
+    first = given[False][0]
+    return [
+        f"{first.place}: '{first.signal}' has no `sigma:` here, and other signals have one: a fit "
+        "refuses that; give every measured signal a sigma, or none"
+    ]
