@@ -19,8 +19,6 @@ class RoundingLimits:
     """The canonical correlation from which on two effects are one and the same on these data."""
     flat: Final[float] = 1e-12
     """Of the largest information: what a direction of values has less is nothing."""
-    in_flat: Final[float] = 0.1
-    """The component of a value in such a direction of length 1 from which on it takes part."""
     direction: Final[float] = 1e-8
     """Of the largest singular value of columns of length 1: a direction that has less is none."""
     negligible: Final[float] = 1e-9

@@ -92,6 +92,9 @@ class TrialOptions:
     """Seconds of one run, at most."""
     steps: int = 20
     """Steps of a fit, at most."""
+    in_flat: float = 0.1
+    """The component of a value in a direction of length 1 that the data do not show, from which on
+    the value takes part in it."""
     not_astray: float = 2.0
     """The mean squared residual of a window, in the noise's variance, up to which its start has not
     been led astray."""

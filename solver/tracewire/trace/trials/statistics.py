@@ -37,14 +37,14 @@ def inverse_information(slopes: Matrix) -> tuple[Matrix, Vector]:
     return np.asarray(np.linalg.pinv(scaled.T @ scaled, rcond=1e-12)), sizes
 
 
-def flat_values(slopes: Matrix) -> NDArray[np.bool_]:
-    """Which values (n,) take part in a direction along which residuals with slopes (M, n) stay as
-    they are."""
+def flat_values(slopes: Matrix, part: float) -> NDArray[np.bool_]:
+    """Which values (n,) take part, by more than a `part`, in a direction along which residuals with
+    slopes (M, n) stay as they are."""
     sizes = np.linalg.norm(slopes, axis=0)
     scaled = slopes / np.where(sizes > 0, sizes, 1.0)
     information, directions = np.linalg.eigh(scaled.T @ scaled)
     flat = directions[:, information < ROUNDING.flat * max(float(information[-1]), 1e-300)]
-    return np.asarray((np.abs(flat) > ROUNDING.in_flat).any(axis=1) | (sizes == 0))
+    return np.asarray((np.abs(flat) > part).any(axis=1) | (sizes == 0))
 
 
 def errors_behind(residuals: Sequence[Vector], others: Sequence[Vector], blocks: int) -> float:

@@ -134,7 +134,8 @@ class Trial:
     @cached_property
     def undetermined(self) -> set[str]:
         """The values that take part in a change of several which the data do not show."""
-        flat = flat_values(project_out_initial_states(self.windows)[0])
+        slopes, _ = project_out_initial_states(self.windows)
+        flat = flat_values(slopes, self.options.in_flat)
         return {name for name, is_flat in zip(self.windows.values, flat, strict=True) if is_flat}
 
     def intervals(self, confidence: float) -> dict[str, tuple[float, float]]:
