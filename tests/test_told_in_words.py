@@ -82,7 +82,8 @@ def test_a_typo_in_a_block_of_the_base_is_told(tmp_path: Path) -> None:
 
 
 def test_a_loop_whose_solution_was_not_found_may_have_one() -> None:
-    loop = "span: [0, 1]\nblocks: {y: {type: expression, formula: y**3 - t + 1, guess: 0}}\n"
+    loop = "  r: {type: ramp, slope: 1}\n  y: {type: expression, formula: y**3 - r + 1, guess: 0}\n"
+    loop = f"span: [0, 1]\nrecord: [y]\nblocks:\n{loop}"
     with pytest.raises(SimulationError, match="loop y -> y, of which no solution was found there"):
         tw.simulate(tw.compile(tw.read_text(loop)))
 
