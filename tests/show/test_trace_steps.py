@@ -58,6 +58,10 @@ def test_where_the_steps_agree_nothing_is_overridden() -> None:
         words="accepted: coulomb @ torque",
     )  # fmt: skip
     assert decided_words(replace(FOUND, steps=(accepted, COMPARED))) == ""
+    # what was refused is no part of the name of what was accepted
+    oulomb = CandidateScore("oulomb @ torque", 9.0, 12.0)
+    both = replace(accepted, tried=(*accepted.tried, oulomb))
+    assert decided_words(replace(FOUND, steps=(both, COMPARED))) == ""
     assert decided_words(replace(FOUND, steps=SEARCHED)) == ""  # nothing was compared
 
 

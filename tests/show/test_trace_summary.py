@@ -185,7 +185,8 @@ def test_a_parameter_that_comes_back_to_its_declared_value_is_not_doubted() -> N
 def test_a_parameter_that_went_to_zero_is_told() -> None:
     text = paragraph_of(replace(FOUND, dropped=("c",)))
     assert text.endswith(
-        "The fit sets 'c' to zero: the data do not need what the diagram declares there."
+        "'c' is left out, as 0: beside the effects the data do not need it, and the intervals "
+        "suppose that."
     )
     assert "absorbed" not in text  # 'c' is told once
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 from tracewire.show.trace_words import both_of
 from tracewire.trace import CandidateScore, Found, FoundEffect, SearchStep
@@ -41,7 +42,7 @@ def decided_words(found: Found) -> str:
         if step.words.startswith("accepted")
         for row in step.tried
         for name in names_of_row(row)
-        if name in step.words
+        if name in re.split(r": | and |, ", step.words)
     }
     named = list(map(str, found.effects))
     lost = [f"{name}, which step {n} accepted" for name, n in accepted.items() if name not in named]

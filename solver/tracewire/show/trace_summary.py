@@ -396,7 +396,11 @@ def _dropped(found: Found) -> str:
     if not found.dropped:
         return ""
     names = both_of([f"'{name}'" for name in found.dropped])
-    return f"The fit sets {names} to zero: the data do not need what the diagram declares there."
+    one = len(found.dropped) == 1
+    return (
+        f"{names} {'is' if one else 'are'} left out, as 0: beside the effects the data do not need"
+        f" {'it' if one else 'them'}, and the intervals suppose that."
+    )
 
 
 def _was(texts: tuple[str, ...]) -> str:

@@ -61,7 +61,11 @@ def answer_lines(found: Found) -> tuple[str, ...]:
         lines.append(f"  {partial}{effect}: {values}")
         meaning = meaning_words(found, effect).partition(": ")[2].rstrip(".")
         lines += [f"    {text}" for text in (meaning, _ties(effect), effect.doubt) if text]
-    lines += [f"  the fit sets {name} to zero" for name in found.dropped]
+    lines += [
+        f"  {name} is left out, as 0: beside the effects the data do not need it, and the intervals"
+        " suppose that"
+        for name in found.dropped
+    ]
     if explained := excess_words(found):
         lines.append(f"  explained: {explained}")
     lines += _error_lines(found)

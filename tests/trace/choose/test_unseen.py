@@ -479,7 +479,9 @@ def test_another_wave_of_a_named_kind_takes_another_trace(
     """A motor has ripples of several pitches; one cogging is tried at a place."""
 
     class Effect:
-        candidate = SimpleNamespace(waves=("pitch",) if wave else (), lines=())
+        shapes = ("pitch", "phase") if wave else ("period", "damping")  # a resonance
+        lines = () if wave else ("period",)
+        candidate = SimpleNamespace(waves=shapes[:1] if wave else (), lines=lines, shapes=shapes)
 
         def __str__(self) -> str:
             return "cogging @ shaft"

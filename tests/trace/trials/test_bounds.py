@@ -102,6 +102,11 @@ def test_the_smoothing_of_a_law_at_zero_is_the_exact_law() -> None:
     assert not replace(low, value=1.0, upper=True).exact
 
 
+def test_a_bound_is_told_in_the_users_unit() -> None:
+    one = AtBound("k", "parameter", 1e7, 0.0, 1e7, True, "bar/(s V)", factor=1e5)
+    assert one.words.startswith("'k' sits on its bound 100 bar/(s V): widen its `fit: [0, 100]`")
+
+
 def test_a_coefficient_at_zero_is_an_effect_that_is_not_used() -> None:
     one = AtBound("coulomb.level", "coefficient", 0.0, 0.0, 10.0, False, "", "coulomb @ force")
     assert one.absent

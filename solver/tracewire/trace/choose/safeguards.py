@@ -10,6 +10,7 @@ import numpy as np
 from tracewire.errors import FitError
 from tracewire.formula import two_digits
 from tracewire.residual import project_out_initial_states
+from tracewire.trace.candidates.candidate import PHASE
 from tracewire.trace.check.mistakes import refuse_mistakes
 from tracewire.trace.choose.own_rhythm import describe_own_rhythm
 from tracewire.trace.choose.unseen import (
@@ -62,7 +63,8 @@ def safeguard(search: Search, judgement: Judgement) -> Judgement:
 def tell_waves_tried_once(search: Search, judgement: Judgement) -> None:
     """Say that more waves of a named kind may be left: a search tries one of a kind at a place."""
     best = judgement.final.best
-    kinds = [str(e) for e in best.effects if e.candidate.waves or e.candidate.lines]
+    waves = [e for e in best.effects if e.candidate.waves or e.candidate.lines]
+    kinds = [str(e) for e in waves if PHASE in e.candidate.shapes]  # a resonance is no wave
     named = judgement.verdict == "effect" and kinds
     if named and best.reduced_chi2 > search.options.informative:
         search.words.append(

@@ -161,7 +161,7 @@ def _small_share(effect: str, share: float | None, options: TraceOptions) -> str
         return ""
     return (
         f"{effect} takes {two_digits(100 * max(share, 0.0))} % of the squared error that was"
-        " missing: so small a part may stand for another law"
+        " missing: so small a part may stand for another law, and other values then make up for it"
     )
 
 

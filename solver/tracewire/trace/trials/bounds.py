@@ -16,7 +16,7 @@ Kind = Literal["parameter", "sensor", "coefficient", "shape"]
 
 @dataclass(frozen=True)
 class AtBound:
-    """A fitted number on one of its bounds, in SI.
+    """A fitted number on one of its bounds, in SI; the user has it in `unit`, which is `factor` SI.
 
     name: of the unknown. kind: a declared parameter, a number of a sensor, or the coefficient or a
     shape of an effect, which is then `effect`. absent: the bound is 0, and what the number scales
@@ -31,6 +31,7 @@ class AtBound:
     upper: bool
     unit: str = ""
     effect: str = ""
+    factor: float = 1.0
 
     @property
     def bound(self) -> float:
@@ -51,7 +52,7 @@ class AtBound:
     def words(self) -> str:
         """What sits where, and what to do."""
         known = self._known
-        ends = f"`fit: [{self.low:.4g}, {self.high:.4g}]`"
+        ends = f"`fit: [{self.low / self.factor:.4g}, {self.high / self.factor:.4g}]`"
         short = self.name.rpartition(".")[2]
         if self.kind == "shape":
             side = "above" if self.upper else "below"
@@ -77,7 +78,7 @@ class AtBound:
 
     @property
     def _known(self) -> str:
-        return f"{self.bound:.4g} {self.unit}".strip()
+        return f"{self.bound / self.factor:.4g} {self.unit}".strip()
 
     @property
     def _what(self) -> str:
@@ -107,10 +108,10 @@ def at_bounds(trial: Trial) -> list[AtBound]:
         if effect is not None and _is_phase(unknown.name):
             continue
         low, high = unknown.low, unknown.high
-        unit = _unit(trial, unknown.name, effect)
+        unit, factor = _users_unit(trial, unknown.name, effect)
         kind = _kind(trial, unknown.name, effect)
         label = "" if effect is None else str(effect)
-        found.append(AtBound(unknown.name, kind, value, low, high, upper, unit, label))
+        found.append(AtBound(unknown.name, kind, value, low, high, upper, unit, label, factor))
     order = ("parameter", "sensor", "coefficient", "shape")
     return sorted(found, key=lambda one: order.index(one.kind))
 
@@ -151,19 +152,20 @@ def _kind(trial: Trial, name: str, effect: PlacedEffect | None) -> Kind:
     return "sensor" if is_of_sensor(trial.model, name) else "parameter"
 
 
-def _unit(trial: Trial, name: str, effect: PlacedEffect | None) -> str:
-    """The unit in SI of a number; '' where it is not known."""
-    flat = trial.model.flat
+def _users_unit(trial: Trial, name: str, effect: PlacedEffect | None) -> tuple[str, float]:
+    """The unit in which a user has a number, and its factor to SI; '' where it is not known."""
+    model = trial.model
     if effect is not None:
         place, of = effect.candidate.place, effect.candidate.scales.get(name.rpartition(".")[2], "")
-        if of in ("T", "dt"):
-            return "s"
+        if of in ("", "T", "dt"):
+            return ("s" if of else ""), 1.0
         if of in ("U", "drives"):
-            return flat.units.get("".join(place.drive[:1]) or place.definition, "")
-        return flat.units.get(place.v if of in ("V", "rates", "top") else place.q, "") if of else ""
-    if is_of_sensor(trial.model, name):
+            return model.users_unit("".join(place.drive[:1]) or place.definition)
+        return model.users_unit(place.v if of in ("V", "rates", "top") else place.q)
+    if is_of_sensor(model, name):
         kind, _, signal = name.partition(".")
-        unit = flat.units.get(signal, "")
-        return {"offset": unit, "delay": "s", "gain": ""}.get(kind, "")
-    parameter = flat.parameters.get(name.partition(OWN)[0])
-    return parameter.unit if parameter is not None else ""
+        if kind == "offset":
+            return model.users_unit(signal)
+        return ("s" if kind == "delay" else ""), 1.0
+    parameter = model.flat.parameters.get(name.partition(OWN)[0])
+    return parameter.users_unit if parameter is not None else ("", 1.0)
