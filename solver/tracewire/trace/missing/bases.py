@@ -59,7 +59,7 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
     """The bases at a place, along its runs.
 
     Variables: `q`, `v`, `a` of the place, `t`, `u` and `drive phase` of each drive, `history`
-    (low-passed q and v, and q behind stops), `other_q` and `other_v` of other bodies. With a number
+    (low-passed q and v, and q behind stops), q or v with a drive, `other_q` and `other_v` of other bodies. With a number
     of drives or bodies, each has its signal behind its name: `u of force`.
     """
     if place.kind == "sensor":
@@ -80,6 +80,10 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
         of = f" of {name}" if len(place.drive) > 1 else ""
         u = _values(runs, name)
         yield from _smooth(options, f"u{of}", u)
+        for variable, own in (("q", q), ("v", v)):
+            if own and u:
+                axes = _axis(own, options.others), _axis(u, options.others)
+                yield _grid((variable, f"u{of}"), *axes)
         phase = [drive_phase(run.t, x, options.tonal) for run, x in zip(runs, u, strict=False)]
         if phase and all(x is not None for x in phase):
             known = [x for x in phase if x is not None]
