@@ -34,6 +34,8 @@ def test_all_variables_of_a_place_are_tried() -> None:
         ("t",),
         ("history",),
         ("u",),
+        ("q", "u"),
+        ("v", "u"),
         ("drive phase",),
         ("other_q",),
         ("other_v",),
