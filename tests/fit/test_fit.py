@@ -12,6 +12,7 @@ import pytest
 from residual.models import LINE, OSCILLATOR, PENDULUM, C, K, T, made, oscillation, series, swing
 from tracewire.errors import DataError, FitError, OptionError
 from tracewire.fit import Fit, Progress, fit, optimset
+from tracewire.fit.kept import EXACT
 from tracewire.fit.methods import METHODS as FIT_METHODS
 from tracewire.fit.remarks import raises_unseen, rises, unfinished
 from tracewire.residual import Measured, Sensor
@@ -472,7 +473,7 @@ def test_a_fit_that_raises_the_error_of_what_it_has_not_seen_says_so() -> None:
     (again,) = raises_unseen(fitted(OSCILLATOR, train, other).comparisons, "multiple_shooting")
     assert "--method" not in again
     same = series(oscillation(T, 0.9), "other", use="validate")
-    assert fitted(OSCILLATOR, train, same).remarks == ()
+    assert fitted(OSCILLATOR, train, same).remarks == (EXACT,)
 
 
 def test_a_block_bounds_what_a_fit_may_change() -> None:

@@ -21,11 +21,11 @@ class Limits:
     max_step: float = math.inf
 
     def refuse(self) -> None:
-        """Raises OptionError: a limit that is not above zero; no events may be kept."""
+        """Raises OptionError: a number of steps or a time that is not above zero."""
         problems = [
             Problem(f"the limit '{name}' of a run must be above zero, not {value:g}")
-            for name, value in vars(self).items()
-            if not value > (-1 if name == "events" else 0)
+            for name, value in (("steps", self.steps), ("seconds", self.seconds))
+            if not value > 0
         ]
         if problems:
             raise OptionError(problems)
