@@ -315,9 +315,12 @@ def test_the_likely_noise_of_an_input_is_its_own_and_leaves_nothing() -> None:
     white = [(s, 30 * RNG.standard_normal(r.shape), slopes) for s, r, slopes in windows]
     assert likely_input_noise(response, "F", sigma, white).after > 5
     # what a slow force makes has the size of some noise, and is not white
-    answers = response.impulses({"F": 1.0}, np.arange(length))[1:]
-    pull = answers @ np.sin(0.05 * np.arange(answers.shape[-1]))
-    slow = [(s, pull / SENSOR_NOISE, slopes) for s, _, slopes in windows]
+    slow = []
+    for segment, residual, slopes in windows:
+        rows = np.arange(int(segment.rows[0]) - 1, int(segment.rows[-1]) + 1)
+        answers = response.impulses({"F": 0.05}, rows)[1:] / SENSOR_NOISE
+        pull = answers @ np.sin(0.05 * np.arange(answers.shape[-1]) + RNG.uniform(0, 6))
+        slow.append((segment, pull + RNG.standard_normal(residual.shape), slopes))
     one = likely_input_noise(response, "F", sigma, slow)
     assert one.after < 2
     assert one.evenness < 0.3
