@@ -59,8 +59,8 @@ def bases_of(place: Place, runs: Sequence[Trajectory], options: MapOptions) -> I
     """The bases at a place, along its runs.
 
     Variables: `q`, `v`, `a` of the place, `t`, `u` and `drive phase` of each drive, `history`
-    (low-passed q and v, and q behind stops), q or v with a drive, `other_q` and `other_v` of other bodies. With a number
-    of drives or bodies, each has its signal behind its name: `u of force`.
+    (low-passed q and v, and q behind stops), q or v with a drive, `other_q` and `other_v` of other
+    bodies. With a number of drives or bodies, each has its signal behind its name: `u of force`.
     """
     if place.kind == "sensor":
         yield from _smooth(options, "y", [run.signals[place.definition] for run in runs])
