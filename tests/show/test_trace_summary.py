@@ -17,6 +17,7 @@ from tracewire.show.trace_summary import (
     limits_words,
     open_words,
     paragraph_of,
+    rest_words,
     ties_words,
 )
 from tracewire.show.trace_tables import power_table
@@ -100,6 +101,19 @@ def test_the_details_have_the_fit_the_meaning_and_what_remains() -> None:
         "A smooth function of the coordinate theta and the rate omega at the sum 'torque' explains "
         "35 %" in text
     )
+
+
+def test_the_rest_at_another_place_is_told_where_it_explains_as_much() -> None:
+    shares = [("sensor.theta", "t", 0.71), ("torque", "t", 0.69), ("torque", "q", 0.68)]
+    depends = tuple(Dependence(place, (name,), share) for place, name, share in shares)
+    assert rest_words(replace(EXPLAINED, remainder_depends=depends)) == (
+        "A smooth function of the time t in the sensor of 'theta' explains 71 % of that, and one "
+        "of the time t at the sum 'torque' 69 %"
+    )
+    far = (depends[0], replace(depends[1], share=0.5))
+    said = rest_words(replace(EXPLAINED, remainder_depends=far))
+    assert said.endswith("explains 71 % of that")
+    assert rest_words(replace(EXPLAINED, remainder_depends=())) == ""
 
 
 def test_ties_and_the_experiment_that_separates_them_are_told() -> None:

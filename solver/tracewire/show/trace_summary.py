@@ -328,13 +328,23 @@ def _remains(found: Found) -> list[str]:
 
 
 def rest_words(found: Found) -> str:
-    """On what the rest depends that the named effects leave on held-out blocks; '': on nothing."""
-    most = max(found.remainder_depends, key=lambda d: d.share, default=None)
-    if most is None or most.share <= 0:
+    """On what the rest depends that the named effects leave on held-out blocks, also at another
+    place that explains about as much; '': on nothing."""
+    shares = sorted(found.remainder_depends, key=lambda d: -d.share)
+    if not shares or shares[0].share <= 0:
         return ""
+    most = shares[0]
+    least = most.share - WORD.alike_places
+    alike = [d for d in shares if d.place != most.place and d.share > least]
     variables = variables_words(found, most.place, most.variables)
-    share = percent(most.share)
-    return f"A smooth function of {variables} {place_words(most.place)} explains {share} of that"
+    text = (
+        f"A smooth function of {variables} {place_words(most.place)} explains {percent(most.share)}"
+        " of that"
+    )
+    for other in alike[:1]:
+        variables = variables_words(found, other.place, other.variables)
+        text += f", and one of {variables} {place_words(other.place)} {percent(other.share)}"
+    return text
 
 
 def _unexplained(found: Found) -> list[str]:
