@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
+from tracewire.array_types import Vector
 from tracewire.compile import Model, compile
 from tracewire.diagram import read_text
 from tracewire.fit import Fit, fit
+from tracewire.fit.kept import is_exact
 from tracewire.fit.methods import METHODS
 from tracewire.residual import Measured
 from tracewire.solve import simulate
@@ -68,3 +73,18 @@ def test_a_fit_to_noise_is_not_said_to_be_exact() -> None:
     model = made(MODEL)
     found: Fit = fit(model, [record(model, 1e-3)])
     assert "nothing is left that could be noise" not in " ".join(found.remarks)
+
+
+def test_noise_that_is_small_beside_an_offset_is_noise() -> None:
+    """0.1 mK on 300 K is below a relative tolerance of 1e-6, and not below what it moves by."""
+    t = np.linspace(0, 20, 400)
+    noise = 1e-4 * np.random.default_rng(1).standard_normal(len(t))
+
+    def one(measured: Vector, left: Vector) -> Any:
+        counts = np.ones(len(t), dtype=bool)
+        return SimpleNamespace(use="train", counts=counts, measured=measured, residual_after=left)
+
+    warm = 300 + 2 * np.exp(-0.3 * t)
+    assert not is_exact([one(warm + noise, noise)], 1e-6)
+    assert is_exact([one(warm, 1e-3 * noise)], 1e-6)
+    assert is_exact([one(np.full(len(t), 300.0), noise)], 1e-6)  # of what does not move: its size
